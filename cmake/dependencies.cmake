@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: Apache-2.0
+# Every dependency is a package of Debian 12; nothing is fetched while configuring.
+find_package(Threads REQUIRED)
+find_package(Eigen3 3.4 REQUIRED)
+include(opencv_targets)
+find_package(fmt 9 REQUIRED)
+find_package(yaml-cpp 0.7 REQUIRED)
+find_package(nlohmann_json 3.11 REQUIRED)
+find_package(CLI11 2.1 REQUIRED)
+find_package(PkgConfig REQUIRED)
+find_package(PNG REQUIRED)
+pkg_check_modules(TURBOJPEG REQUIRED IMPORTED_TARGET libturbojpeg)
+if(STILLMAP_BUILD_TESTS)
+  find_package(GTest 1.12 REQUIRED)
+endif()
+if(STILLMAP_BUILD_TESTS OR STILLMAP_BUILD_BENCHMARKS)
+  find_package(Ceres 2.1 REQUIRED) # the independent reference of the bundle adjuster
+endif()
+if(STILLMAP_BUILD_BENCHMARKS)
+  find_package(benchmark REQUIRED)
+endif()

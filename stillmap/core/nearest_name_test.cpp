@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/core/nearest_name.hpp"
+
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace stillmap {
+namespace {
+
+const std::vector<std::string> kNames = {"tracking.features", "cloud.voxel_size_m", "seed"};
+
+TEST(NameHint, SuggestsACloseName) {
+  EXPECT_EQ(name_hint("tracking.feature", kNames), "did you mean 'tracking.features'?");
+  EXPECT_EQ(name_hint("cloud.voxelsize_m", kNames), "did you mean 'cloud.voxel_size_m'?");
+  EXPECT_EQ(name_hint("sead", kNames), "did you mean 'seed'?");
+}
+
+TEST(NameHint, ListsAllWhenNoneIsClose) {
+  EXPECT_EQ(name_hint("zzzzzzzz", kNames), "known: tracking.features, cloud.voxel_size_m, seed");
+  EXPECT_EQ(name_hint("", kNames), "known: tracking.features, cloud.voxel_size_m, seed");
+}
+
+}  // namespace
+}  // namespace stillmap
