@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "stillmap/features/descriptor.hpp"
+#include "stillmap/features/feature_grid.hpp"
+
+namespace stillmap {
+
+/// The point features of one frame, as parallel arrays of equal length. Never changed once made.
+struct Features {
+  std::vector<Eigen::Vector2f> raw_px;  ///< where the image has them
+  std::vector<Eigen::Vector2f> px;      ///< ideal (undistorted) pixels: all geometry uses these
+  std::vector<float> depth_m;           ///< along the optical axis; 0 where unknown
+  std::vector<std::uint8_t> level;      ///< of the image pyramid; 0 is the full resolution
+  std::vector<float> angle_deg;         ///< orientation, [0, 360)
+  std::vector<Descriptor> descriptors;
+  FeatureGrid grid;  ///< over px
+
+  [[nodiscard]] std::size_t size() const { return px.size(); }
+};
+
+using FeaturesPtr = std::shared_ptr<const Features>;
+
+}  // namespace stillmap

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/optim/pose_optimizer.hpp"
+
+#include <limits>
+
+#include <Eigen/Cholesky>
+
+namespace stillmap {
+namespace {
+
+constexpr int kRounds = 4;
+constexpr int kRobustRounds = 2;
+constexpr int kIterations = 8;
+constexpr int kMinObservations = 3;
+
+using Observations = std::span<const PoseObservation>;
+
+double squared_error(const CameraModel& camera,
+                     const Eigen::Isometry3d& T,
+                     const PoseObservation& observation) {
+  const Eigen::Vector3d p_camera = T * observation.p_world;
+  if (p_camera.z() < kMinPointDepth) return std::numeric_limits<double>::infinity();
+  return reprojection_residual(camera, observation.measurement, p_camera).squaredNorm();
+}
+
+double loss(double chi2, const PointMeasurement& measurement, bool robust) {
+  return robust ? Huber(chi2, chi2_bound(measurement)).cost : chi2;
+}
+
+struct NormalEquations {
+  Matrix6d H = Matrix6d::Zero();
+  Vector6d g = Vector6d::Zero();
+  double cost = 0;
+};
+
+NormalEquations linearize(const CameraModel& camera,
+                          const Eigen::Isometry3d& T,
+                          Observations observations,
+                          std::span<const std::uint8_t> inlier,
+                          bool robust) {
+  NormalEquations eq;
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    if (inlier[i] == 0) continue;
+    const PointMeasurement& m = observations[i].measurement;
+    const Eigen::Vector3d p_camera = T * observations[i].p_world;
+    if (p_camera.z() < kMinPointDepth) continue;
+    const Eigen::Vector3d r = reprojection_residual(camera, m, p_camera);
+    const Eigen::Matrix<double, 3, 6> J =
+        pose_jacobian(reprojection_jacobian(camera, m, p_camera), p_camera);
+    const Huber huber(r.squaredNorm(), chi2_bound(m));
+    const double weight = robust ? huber.weight : 1.0;
+    eq.H.noalias() += weight * J.transpose() * J;
+    eq.g.noalias() += weight * J.transpose() * r;
+    eq.cost += robust ? huber.cost : r.squaredNorm();
+  }
+  return eq;
+}
+
+double total_cost(const CameraModel& camera,
+                  const Eigen::Isometry3d& T,
+                  Observations observations,
+                  std::span<const std::uint8_t> inlier,
+                  bool robust) {
+  double cost = 0;
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    if (inlier[i] == 0) continue;
+    cost += loss(squared_error(camera, T, observations[i]), observations[i].measurement, robust);
+  }
+  return cost;
+}
+
+Eigen::Isometry3d minimize(const CameraModel& camera,
+                           Eigen::Isometry3d T,
+                           Observations observations,
+                           std::span<const std::uint8_t> inlier,
+                           bool robust) {
+  double damping = 1e-5;
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    const NormalEquations eq = linearize(camera, T, observations, inlier, robust);
+    Matrix6d H = eq.H;
+    H.diagonal() += damping * eq.H.diagonal();
+    H.diagonal().array() += 1e-9;  // keeps an undetermined direction where it is
+    const Vector6d step = H.ldlt().solve(-eq.g);
+    if (!step.allFinite()) break;
+    const Eigen::Isometry3d candidate = perturb_left(T, step);
+    const double cost = total_cost(camera, candidate, observations, inlier, robust);
+    if (cost > eq.cost) {
+      damping *= 100;
+      continue;
+    }
+    T = candidate;
+    damping = std::max(damping * 0.1, 1e-9);
+    if (eq.cost - cost < 1e-6 * eq.cost) break;
+  }
+  return T;
+}
+
+}  // namespace
+
+PoseEstimate optimize_pose(const CameraModel& camera,
+                           const Eigen::Isometry3d& T_camera_world,
+                           Observations observations) {
+  PoseEstimate estimate{T_camera_world,
+                        std::vector<std::uint8_t>(observations.size(), 1),
+                        static_cast<int>(observations.size())};
+  for (int round = 0; round < kRounds && estimate.inliers >= kMinObservations; ++round) {
+    estimate.T_camera_world = minimize(
+        camera, estimate.T_camera_world, observations, estimate.inlier, round < kRobustRounds);
+    estimate.inliers = 0;
+    for (std::size_t i = 0; i < observations.size(); ++i) {
+      const double chi2 = squared_error(camera, estimate.T_camera_world, observations[i]);
+      estimate.inlier[i] = chi2 <= chi2_bound(observations[i].measurement) ? 1 : 0;
+      estimate.inliers += estimate.inlier[i];
+    }
+  }
+  if (observations.size() < kMinObservations) {
+    estimate.inlier.assign(observations.size(), 0);
+    estimate.inliers = 0;
+  }
+  return estimate;
+}
+
+}  // namespace stillmap
