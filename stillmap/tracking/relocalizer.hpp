@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "stillmap/core/camera.hpp"
+#include "stillmap/core/fields.hpp"
+#include "stillmap/map/map.hpp"
+#include "stillmap/optim/measurement_model.hpp"
+
+namespace stillmap {
+
+struct RelocalizerConfig {
+  int candidates = 8;
+  int iterations = 200;
+  int min_inliers = 25;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("candidates",
+          self.candidates,
+          FieldInfo{"key frames tried in a frame while lost", "", 1, 1000});
+    visit("iterations", self.iterations, FieldInfo{"of RANSAC, per key frame", "", 1, 100000});
+    visit("min_inliers", self.min_inliers, FieldInfo{"that prove a place", "", 4, 1000});
+  }
+};
+
+struct Relocalization {
+  Eigen::Isometry3d T_camera_world;
+  std::vector<std::pair<std::uint32_t, LandmarkId>> matches;  ///< (feature, landmark), inliers
+};
+
+/// Finds a frame's pose without knowing where the camera is, by appearance alone.
+class Relocalizer {
+ public:
+  Relocalizer(const RelocalizerConfig& config,
+              const CameraModel& camera,
+              MeasurementModel measure,
+              std::uint32_t seed);
+
+  /// Tries the key frames that are covisible with `last_reference`, and a further few of the whole
+  /// map by turns, so that over some frames all are tried. Nothing when none fits.
+  [[nodiscard]] std::optional<Relocalization> find(FrameId frame,
+                                                   const Features& features,
+                                                   const Map& map,
+                                                   KeyframeId last_reference) const;
+
+ private:
+  struct Correspondence {
+    std::uint32_t feature;
+    LandmarkId landmark;
+    Eigen::Vector3d p_world;
+    Eigen::Vector3d p_camera;  // from the feature's depth
+    bool has_depth;
+  };
+
+  [[nodiscard]] std::vector<KeyframeId> candidates(FrameId frame,
+                                                   const Map& map,
+                                                   KeyframeId last_reference) const;
+  [[nodiscard]] std::vector<Correspondence> match(const Features& features,
+                                                  const Keyframe& keyframe,
+                                                  const Map& map) const;
+  [[nodiscard]] std::optional<Eigen::Isometry3d> sample_pose(
+      FrameId frame, std::span<const Correspondence> matches) const;
+
+  RelocalizerConfig config_;
+  CameraModel camera_;
+  MeasurementModel measure_;
+  std::uint32_t seed_;
+};
+
+}  // namespace stillmap
