@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/config/config_io.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include "stillmap/config/field_keys.hpp"
+#include "stillmap/config/field_text.hpp"
+#include "stillmap/core/error.hpp"
+
+namespace stillmap {
+namespace {
+
+// Double quotes, the one YAML style that can hold any text.
+std::string yaml_quoted(std::string_view text) {
+  std::string yaml = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 || byte == 0x7F) {
+      yaml += fmt::format("\\x{:02x}", byte);
+    } else {
+      if (c == '"' || c == '\\') yaml += '\\';
+      yaml += c;
+    }
+  }
+  return yaml + '"';
+}
+
+std::vector<std::string_view> split_key(std::string_view key) {
+  std::vector<std::string_view> parts;
+  for (std::size_t dot = key.find('.'); dot != std::string_view::npos; dot = key.find('.')) {
+    parts.push_back(key.substr(0, dot));
+    key.remove_prefix(dot + 1);
+  }
+  parts.push_back(key);
+  return parts;
+}
+
+struct YamlLine {
+  std::string text;
+  std::string comment;
+};
+
+std::string comment_of(const FieldInfo& info) {
+  if (info.unit.empty()) return std::string(info.meaning);
+  return fmt::format("{} ({})", info.meaning, info.unit);
+}
+
+// One line a field, and one for each group where it begins.
+std::vector<YamlLine> yaml_lines(std::span<const FieldRef> fields) {
+  std::vector<YamlLine> lines;
+  std::vector<std::string_view> open;  // the groups the last line is in
+  for (const FieldRef& field : fields) {
+    std::vector<std::string_view> groups = split_key(field.key);
+    const std::string_view name = groups.back();
+    groups.pop_back();
+    const auto common = std::ranges::mismatch(groups, open).in1;
+    for (auto group = common; group != groups.end(); ++group) {
+      const auto depth = static_cast<std::size_t>(group - groups.begin());
+      lines.push_back({fmt::format("{}{}:", std::string(2 * depth, ' '), *group), ""});
+    }
+    const std::string value =
+        is_text(field) ? yaml_quoted(format_value(field)) : format_value(field);
+    lines.push_back({fmt::format("{}{}: {}", std::string(2 * groups.size(), ' '), name, value),
+                     comment_of(field.info)});
+    open = std::move(groups);
+  }
+  return lines;
+}
+
+using TableRow = std::array<std::string, 5>;
+
+std::string format_table(const std::vector<TableRow>& rows) {
+  std::array<std::size_t, 5> widths{};
+  for (const TableRow& row : rows) {
+    for (std::size_t column = 0; column < row.size(); ++column) {
+      widths[column] = std::max(widths[column], row[column].size());
+    }
+  }
+  std::string table;
+  for (const TableRow& row : rows) {
+    for (std::size_t column = 0; column + 1 < row.size(); ++column) {
+      table += fmt::format("{:<{}}  ", row[column], widths[column]);
+    }
+    table += row.back() + '\n';
+  }
+  return table;
+}
+
+}  // namespace
+
+void set_value(std::span<const FieldRef> fields, std::string_view assignment) {
+  const std::size_t equals = assignment.find('=');
+  if (equals == std::string_view::npos) {
+    throw Error("--set {}: expected key=value", printable(assignment));
+  }
+  const std::string_view key = assignment.substr(0, equals);
+  const FieldRef* field = find_field(fields, key);
+  if (field == nullptr) {
+    const FieldRef* member = find_group(fields, key);
+    if (member != nullptr) throw_is_group(*member, key, "--set");
+    throw_unknown_key(fields, key, "--set");
+  }
+  assign(*field, assignment.substr(equals + 1), Quoting::kPlain, "--set");
+}
+
+std::string dump_yaml(std::span<const FieldRef> fields) {
+  const std::vector<YamlLine> lines = yaml_lines(fields);
+  std::size_t width = 0;
+  for (const YamlLine& line : lines) width = std::max(width, line.text.size());
+  std::string yaml;
+  for (const YamlLine& line : lines) {
+    yaml += line.comment.empty() ? line.text + '\n'
+                                 : fmt::format("{:<{}}  # {}\n", line.text, width, line.comment);
+  }
+  return yaml;
+}
+
+std::string describe(std::span<const FieldRef> fields) {
+  std::vector<TableRow> rows = {{"KEY", "DEFAULT", "UNIT", "ALLOWED", "MEANING"}};
+  for (const FieldRef& field : fields) {
+    const std::string value = format_value(field);
+    rows.push_back({field.key,
+                    value.empty() ? "\"\"" : value,
+                    std::string(field.info.unit),
+                    allowed_values(field),
+                    std::string(field.info.meaning)});
+  }
+  return format_table(rows);
+}
+
+}  // namespace stillmap
