@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include <Eigen/Geometry>
+
+#include "stillmap/core/images.hpp"
+#include "stillmap/core/point_cloud.hpp"
+
+namespace stillmap {
+
+/// How a picture looks at the world. The camera's axes are x right, y down, z forward; its optical
+/// axis goes through the middle of the picture.
+struct View {
+  Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();
+  int width_px = 960;
+  int height_px = 540;
+  bool orthographic = false;
+  double scale = 600;             ///< focal length in pixels; pixels in a metre when orthographic
+  double near_m = 0.05;           ///< what is nearer along the optical axis is not drawn
+  double point_size_m = 0.01;     ///< edge of the square that a point covers, at least one pixel
+  bool shade_depth_steps = true;  ///< darkens the rims of what lies behind something
+  Rgb background = {255, 255, 255};
+};
+
+/// The transform of a camera at `eye` that looks at `target` (another place), with `down` (not
+/// along the gaze) pointing to the lower edge of the picture.
+[[nodiscard]] Eigen::Isometry3d look_at(const Eigen::Vector3d& eye,
+                                        const Eigen::Vector3d& target,
+                                        const Eigen::Vector3d& down);
+
+/// Where a point falls: x and y in pixels (the upper left corner of the picture is 0, 0) and its
+/// depth along the optical axis. Nothing when it is nearer than the view's limit or not finite.
+[[nodiscard]] std::optional<Eigen::Vector3d> project_point(const View& view,
+                                                           const Eigen::Vector3d& p_world);
+
+/// The cloud as seen in the view: nearest points win, of equally near ones the first in the cloud.
+/// Needs no window and no graphics hardware.
+[[nodiscard]] ColorImage render_points(const PointCloud& cloud, const View& view);
+
+/// A copy of the picture with a line through the points drawn over it.
+[[nodiscard]] ColorImage draw_path(const ColorImage& picture,
+                                   const View& view,
+                                   std::span<const Eigen::Vector3d> path_world,
+                                   Rgb color);
+
+}  // namespace stillmap

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/report/report_json.hpp"
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "stillmap/report/metrics_json.hpp"
+#include "stillmap/report/time_summary.hpp"
+
+namespace stillmap {
+namespace {
+
+using Json = nlohmann::ordered_json;  // keys stay in the order in which they are written here
+
+Json optional_json(const std::optional<double>& value) {
+  return value ? Json(*value) : Json();
+}
+
+Json camera_json(const CameraModel& camera) {
+  return {{"name", camera.name},
+          {"width", camera.width_px},
+          {"height", camera.height_px},
+          {"fx", camera.fx},
+          {"fy", camera.fy},
+          {"cx", camera.cx},
+          {"cy", camera.cy},
+          {"distortion", {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3}},
+          {"depth_factor", camera.depth_factor}};
+}
+
+Json frames_json(const RunReport& report) {
+  Json skipped = Json::array();
+  for (const SkippedFrame& frame : report.skipped) {
+    skipped.push_back({{"stamp", frame.stamp.text}, {"message", frame.message}});
+  }
+  Json lost = Json::array();
+  for (const Stamp& stamp : report.lost) lost.push_back(stamp.text);
+  Json ratio;
+  if (report.frames_total > 0) {
+    ratio = static_cast<double>(report.frames_tracked) / static_cast<double>(report.frames_total);
+  }
+  return {{"total", report.frames_total},
+          {"tracked", report.frames_tracked},
+          {"ratio", ratio},
+          {"skipped", skipped},
+          {"lost", lost}};
+}
+
+Json times_json(std::span<const double> values, bool with_max) {
+  const std::optional<TimeSummary> summary = summarize_times(values);
+  Json json = {{"mean", summary ? Json(summary->mean) : Json()},
+               {"median", summary ? Json(summary->median) : Json()},
+               {"p95", summary ? Json(summary->p95) : Json()}};
+  if (with_max) json["max"] = summary ? Json(summary->max) : Json();
+  return json;
+}
+
+Json time_json(const RunReport& report) {
+  Json stages = Json::object();
+  std::map<std::string, std::vector<double>> samples;
+  for (const StageTimes& stage : report.stages) {
+    std::vector<double>& all = samples[stage.name];
+    all.insert(all.end(), stage.ms.begin(), stage.ms.end());
+    stages[stage.name] = times_json(all, false);
+  }
+  return {{"wall_s", optional_json(report.wall_s)},
+          {"frame_ms", times_json(report.frame_ms, true)},
+          {"stages_ms", stages}};
+}
+
+Json map_json(const PointCloud* map) {
+  if (map == nullptr)
+    return {{"points", nullptr}, {"bounds_min", nullptr}, {"bounds_max", nullptr}};
+  if (map->empty()) return {{"points", 0}, {"bounds_min", nullptr}, {"bounds_max", nullptr}};
+  Eigen::Vector3f low = map->positions.front();
+  Eigen::Vector3f high = low;
+  for (const Eigen::Vector3f& p : map->positions) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  return {{"points", map->size()},
+          {"bounds_min", {low.x(), low.y(), low.z()}},
+          {"bounds_max", {high.x(), high.y(), high.z()}}};
+}
+
+}  // namespace
+
+std::string report_json(const RunReport& report) {
+  const Json json = {{"version", report.version},
+                     {"sequence", report.sequence},
+                     {"camera", camera_json(report.camera)},
+                     {"frames", frames_json(report)},
+                     {"keyframes", report.keyframes.size()},
+                     {"time", time_json(report)},
+                     {"memory", {{"peak_mb", optional_json(report.peak_memory_mb)}}},
+                     {"ate", ate_json(report.ate)},
+                     {"rpe", rpe_json(report.rpe)},
+                     {"map", map_json(report.map)},
+                     {"warnings", report.warnings}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+}  // namespace stillmap

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "stillmap/core/point_cloud.hpp"
+#include "stillmap/core/trajectory.hpp"
+#include "stillmap/report/map_picture.hpp"
+
+namespace stillmap {
+
+/// What one needs to know of a map to look at it well. "Level" axes: x right, y down to the floor,
+/// z horizontal in the direction in which the cameras looked on the whole; origin as in the world.
+struct SceneFrame {
+  Eigen::Matrix3d R_level_world = Eigen::Matrix3d::Identity();
+  Eigen::AlignedBox3d box;  ///< level axes; holds the map but for strays; empty for no map
+  Eigen::Vector3d camera = Eigen::Vector3d::Zero();  ///< mean place of the cameras, level axes
+  double spacing_m = 0.01;                           ///< typical distance of neighbouring points
+};
+
+/// Works out the floor's direction from the map itself, as the world's axes are those of a camera
+/// that may have been tilted (up to 45 degrees): heights of the points are most alike when floors,
+/// tables and ceilings are level. Points that are not finite are left out.
+[[nodiscard]] SceneFrame scene_frame(const PointCloud& map, const Trajectory& cameras);
+
+/// Indexes of the map's points that are finite and not far outside the scene's box, ascending.
+[[nodiscard]] std::vector<std::size_t> points_in_scene(const PointCloud& map,
+                                                       const SceneFrame& scene);
+
+/// A perspective view along the scene from behind and slightly above the cameras.
+[[nodiscard]] View view_along(const SceneFrame& scene, int width_px, int height_px);
+
+/// An orthographic view from above that leaves out what hangs over the cameras' heads.
+[[nodiscard]] View view_from_above(const SceneFrame& scene, int width_px, int height_px);
+
+}  // namespace stillmap
