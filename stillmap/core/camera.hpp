@@ -23,6 +23,8 @@ struct CameraModel {
   double k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0;  ///< distortion, on normalised coordinates
   double depth_factor = 5000;                     ///< units of a stored depth image in a metre
 
+  double readout_s = 0;  ///< rolling shutter: time from the first row to the last; 0 = global
+
   [[nodiscard]] bool distorted() const {
     return k1 != 0 || k2 != 0 || p1 != 0 || p2 != 0 || k3 != 0;
   }

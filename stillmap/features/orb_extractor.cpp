@@ -115,14 +115,16 @@ void OrbExtractor::append(std::size_t level,
 }
 
 void OrbExtractor::place_in_space(const DepthImage& depth, Features& features) const {
-  features.px.reserve(features.raw_px.size());
-  features.depth_m.reserve(features.raw_px.size());
+  features.ideal_px.reserve(features.raw_px.size());
+  features.sensor_depth_m.reserve(features.raw_px.size());
   for (const Eigen::Vector2f& raw : features.raw_px) {
-    features.px.push_back(camera_.undistort(raw.cast<double>()).cast<float>());
+    features.ideal_px.push_back(camera_.undistort(raw.cast<double>()).cast<float>());
     const int u = std::min(cvRound(raw.x()), depth.mat.cols - 1);
     const int v = std::min(cvRound(raw.y()), depth.mat.rows - 1);
-    features.depth_m.push_back(depth.mat(v, u));
+    features.sensor_depth_m.push_back(depth.mat(v, u));
   }
+  features.px = features.ideal_px;
+  features.depth_m = features.sensor_depth_m;
   features.grid = FeatureGrid(features.px, camera_.width_px, camera_.height_px);
 }
 

@@ -24,53 +24,93 @@ Tracker::Tracker(const TrackerConfig& config,
     : config_(config),
       relocalizer_(relocalizer, camera, measure, seed),
       camera_(camera),
-      measure_(std::move(measure)) {}
+      measure_(std::move(measure)),
+      readout_(config.shutter, camera) {}
 
-TrackedFrame Tracker::start(const RgbdFrame& frame, FeaturesPtr features) {
+TrackedFrame Tracker::start(const RgbdFrame& frame, Features features) {
   TrackedFrame tracked;
   tracked.id = frame.id;
   tracked.stamp_s = frame.stamp.seconds;
   tracked.status = TrackingStatus::kInitialized;
-  tracked.landmarks.assign(features->size(), LandmarkId{});
-  tracked.features = std::move(features);
+  tracked.landmarks.assign(features.size(), LandmarkId{});
+  tracked.features = std::make_shared<const Features>(std::move(features));
   last_ = tracked;
   motion_.reset();
   lost_ = false;
   return tracked;
 }
 
-TrackedFrame Tracker::track(const RgbdFrame& frame, FeaturesPtr features, const Map& map) {
+TrackedFrame Tracker::track(const RgbdFrame& frame, Features features, const Map& map) {
   TrackedFrame tracked;
   tracked.id = frame.id;
   tracked.stamp_s = frame.stamp.seconds;
   tracked.reference = last_->reference;
-  tracked.landmarks.assign(features->size(), LandmarkId{});
-  tracked.features = std::move(features);
+  tracked.landmarks.assign(features.size(), LandmarkId{});
 
-  std::optional<PoseFromMatches> start;
-  if (!lost_) start = track_last_frame(tracked, map);
-  if (!lost_ && !start) start = track_reference(tracked, map);
-  tracked.status = TrackingStatus::kTracked;
-  if (!start) {
-    tracked.status = TrackingStatus::kRelocalized;
-    const std::optional<Relocalization> found =
-        relocalizer_.find(frame.id, *tracked.features, map, tracked.reference);
-    if (found) {
-      start = PoseFromMatches{found->T_camera_world, {}};
-      for (const auto& [feature, landmark] : found->matches) {
-        start->inliers.push_back({feature, landmark, map.landmark(landmark).p_world});
-      }
-    }
+  const double since_last_s = tracked.stamp_s - last_->stamp_s;
+  const CameraVelocity expected = mean_velocity(motion_.predict(since_last_s), since_last_s);
+  features = undo_rolling_shutter(std::move(features), camera_, readout_s(), expected);
+  std::optional<PoseFromMatches> pose = find_pose(tracked, features, map);
+  if (pose) {
+    pose = track_local_map(tracked, features, *pose, map);
+    if (!lost_) pose = refine_shutter(tracked, features, *pose, map);
+    tracked.inliers = static_cast<int>(pose->inliers.size());
   }
-  if (start) track_local_map(tracked, *start, map);
-  if (tracked.inliers < config_.min_inliers) tracked.status = TrackingStatus::kLost;
-  if (has_pose(tracked)) {
-    remember(tracked, map);
-  } else {
+  tracked.features = std::make_shared<const Features>(std::move(features));
+  if (tracked.inliers < config_.min_inliers) {
     lost_ = true;
     motion_.reset();
+    return tracked;
   }
+  tracked.status = lost_ ? TrackingStatus::kRelocalized : TrackingStatus::kTracked;
+  tracked.T_world_camera = pose->T_camera_world.inverse();
+  for (const Match& match : pose->inliers) tracked.landmarks[match.feature] = match.landmark;
+  remember(tracked, map);
   return tracked;
+}
+
+std::optional<Tracker::PoseFromMatches> Tracker::find_pose(const TrackedFrame& frame,
+                                                           const Features& features,
+                                                           const Map& map) const {
+  if (!lost_) {
+    if (auto pose = track_last_frame(frame, features, map)) return pose;
+    if (auto pose = track_reference(frame, features, map)) return pose;
+  }
+  return relocalize(frame, features, map);
+}
+
+std::optional<Tracker::PoseFromMatches> Tracker::relocalize(const TrackedFrame& frame,
+                                                            const Features& features,
+                                                            const Map& map) const {
+  const std::optional<Relocalization> found =
+      relocalizer_.find(frame.id, features, map, frame.reference);
+  if (!found) return std::nullopt;
+  PoseFromMatches pose{found->T_camera_world, {}};
+  for (const auto& [feature, landmark] : found->matches) {
+    pose.inliers.push_back({feature, landmark, map.landmark(landmark).p_world});
+  }
+  return pose;
+}
+
+// The features were corrected with the velocity that was expected; now it is known.
+Tracker::PoseFromMatches Tracker::refine_shutter(const TrackedFrame& frame,
+                                                 Features& features,
+                                                 const PoseFromMatches& pose,
+                                                 const Map& map) {
+  const CameraVelocity velocity = mean_velocity(
+      last_pose(map).inverse() * pose.T_camera_world.inverse(), frame.stamp_s - last_->stamp_s);
+  features = undo_rolling_shutter(std::move(features), camera_, readout_s(), velocity);
+  PoseFromMatches refined = optimize(features, pose.T_camera_world, pose.inliers);
+
+  std::vector<PoseObservation> observations;
+  std::vector<double> rows;
+  for (const Match& match : refined.inliers) {
+    observations.push_back({match.p_world, measure_(features, match.feature)});
+    rows.push_back(static_cast<double>(features.raw_px[match.feature].y()) / camera_.height_px -
+                   0.5);
+  }
+  readout_.update(refined.T_camera_world, velocity, observations, rows);
+  return refined;
 }
 
 void Tracker::set_reference(KeyframeId keyframe, const Map& map) {
@@ -153,23 +193,23 @@ Tracker::Matches Tracker::match_last_frame(const Features& features,
 }
 
 std::optional<Tracker::PoseFromMatches> Tracker::track_last_frame(const TrackedFrame& frame,
+                                                                  const Features& features,
                                                                   const Map& map) const {
   const Eigen::Isometry3d T_world_predicted =
       last_pose(map) * motion_.predict(frame.stamp_s - last_->stamp_s);
   const Eigen::Isometry3d T_camera_world = T_world_predicted.inverse();
-  Matches matches =
-      match_last_frame(*frame.features, map, T_camera_world, config_.frame_search_radius_px);
+  Matches matches = match_last_frame(features, map, T_camera_world, config_.frame_search_radius_px);
   if (std::ssize(matches) < kMinFrameMatches) {
-    matches =
-        match_last_frame(*frame.features, map, T_camera_world, 2 * config_.frame_search_radius_px);
+    matches = match_last_frame(features, map, T_camera_world, 2 * config_.frame_search_radius_px);
   }
   if (std::ssize(matches) < kMinFrameMatches) return std::nullopt;
-  PoseFromMatches pose = optimize(*frame.features, T_camera_world, matches);
+  PoseFromMatches pose = optimize(features, T_camera_world, matches);
   if (pose.inliers.size() < kMinFrameInliers) return std::nullopt;
   return pose;
 }
 
 std::optional<Tracker::PoseFromMatches> Tracker::track_reference(const TrackedFrame& frame,
+                                                                 const Features& features,
                                                                  const Map& map) const {
   const Keyframe& reference = map.keyframe(map.anchor(frame.reference).keyframe);
   std::vector<std::uint32_t> with_landmark;
@@ -177,15 +217,15 @@ std::optional<Tracker::PoseFromMatches> Tracker::track_reference(const TrackedFr
     if (reference.landmarks[i].valid()) with_landmark.push_back(i);
   }
   const std::vector<FeatureMatch> found = match_all(
-      *reference.features, with_landmark, *frame.features, {.max_distance = 60, .max_ratio = 0.7});
+      *reference.features, with_landmark, features, {.max_distance = 60, .max_ratio = 0.7});
   Matches matches;
   for (const FeatureMatch& match :
-       keep_consistent_rotations(found, reference.features->angle_deg, frame.features->angle_deg)) {
+       keep_consistent_rotations(found, reference.features->angle_deg, features.angle_deg)) {
     const LandmarkId id = reference.landmarks[match.query];
     matches.push_back({match.feature, id, map.landmark(id).p_world});
   }
   if (std::ssize(matches) < kMinFrameMatches) return std::nullopt;
-  PoseFromMatches pose = optimize(*frame.features, last_pose(map).inverse(), matches);
+  PoseFromMatches pose = optimize(features, last_pose(map).inverse(), matches);
   if (pose.inliers.size() < kMinFrameInliers) return std::nullopt;
   return pose;
 }
@@ -220,10 +260,10 @@ std::vector<LandmarkId> Tracker::local_landmarks(TrackedFrame& frame,
   return landmarks;
 }
 
-void Tracker::track_local_map(TrackedFrame& frame,
-                              const PoseFromMatches& start,
-                              const Map& map) const {
-  const Features& features = *frame.features;
+Tracker::PoseFromMatches Tracker::track_local_map(TrackedFrame& frame,
+                                                  const Features& features,
+                                                  const PoseFromMatches& start,
+                                                  const Map& map) const {
   Matches matches;
   std::vector<std::uint8_t> taken(features.size(), 0);
   for (const Match& match : start.inliers) {
@@ -250,10 +290,7 @@ void Tracker::track_local_map(TrackedFrame& frame,
     const LandmarkId id = projected[match.query];
     matches.push_back({match.feature, id, map.landmark(id).p_world});
   }
-  const PoseFromMatches pose = optimize(features, start.T_camera_world, matches);
-  frame.T_world_camera = pose.T_camera_world.inverse();
-  frame.inliers = static_cast<int>(pose.inliers.size());
-  for (const Match& match : pose.inliers) frame.landmarks[match.feature] = match.landmark;
+  return optimize(features, start.T_camera_world, matches);
 }
 
 }  // namespace stillmap

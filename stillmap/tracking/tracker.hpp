@@ -12,6 +12,7 @@
 #include "stillmap/optim/pose_optimizer.hpp"
 #include "stillmap/tracking/motion_model.hpp"
 #include "stillmap/tracking/relocalizer.hpp"
+#include "stillmap/tracking/rolling_shutter.hpp"
 #include "stillmap/tracking/tracked_frame.hpp"
 
 namespace stillmap {
@@ -21,6 +22,7 @@ struct TrackerConfig {
   double map_search_radius_px = 8;
   int local_keyframes = 30;
   int min_inliers = 30;
+  ShutterConfig shutter;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -33,6 +35,7 @@ struct TrackerConfig {
     visit("local_keyframes",
           self.local_keyframes,
           FieldInfo{"key frames whose landmarks are searched in a frame", "", 1, 1000});
+    visit.group("shutter", self.shutter);
     visit("min_inliers",
           self.min_inliers,
           FieldInfo{"landmarks that must be found for a frame to be tracked", "", 6, 1000});
@@ -54,9 +57,12 @@ class Tracker {
           std::uint32_t seed);
 
   /// The frame that a map begins with: at the world's origin.
-  [[nodiscard]] TrackedFrame start(const RgbdFrame& frame, FeaturesPtr features);
+  [[nodiscard]] TrackedFrame start(const RgbdFrame& frame, Features features);
 
-  [[nodiscard]] TrackedFrame track(const RgbdFrame& frame, FeaturesPtr features, const Map& map);
+  [[nodiscard]] TrackedFrame track(const RgbdFrame& frame, Features features, const Map& map);
+
+  /// The camera's rolling shutter, as learnt so far.
+  [[nodiscard]] double readout_s() const { return readout_.readout_s(); }
 
   /// The last frame has become a key frame of the map.
   void set_reference(KeyframeId keyframe, const Map& map);
@@ -73,15 +79,30 @@ class Tracker {
     Matches inliers;
   };
 
+  [[nodiscard]] std::optional<PoseFromMatches> find_pose(const TrackedFrame& frame,
+                                                         const Features& features,
+                                                         const Map& map) const;
   [[nodiscard]] std::optional<PoseFromMatches> track_last_frame(const TrackedFrame& frame,
+                                                                const Features& features,
                                                                 const Map& map) const;
   [[nodiscard]] std::optional<PoseFromMatches> track_reference(const TrackedFrame& frame,
+                                                               const Features& features,
                                                                const Map& map) const;
+  [[nodiscard]] std::optional<PoseFromMatches> relocalize(const TrackedFrame& frame,
+                                                          const Features& features,
+                                                          const Map& map) const;
   [[nodiscard]] Matches match_last_frame(const Features& features,
                                          const Map& map,
                                          const Eigen::Isometry3d& T_camera_world,
                                          double radius_px) const;
-  void track_local_map(TrackedFrame& frame, const PoseFromMatches& start, const Map& map) const;
+  [[nodiscard]] PoseFromMatches track_local_map(TrackedFrame& frame,
+                                                const Features& features,
+                                                const PoseFromMatches& start,
+                                                const Map& map) const;
+  [[nodiscard]] PoseFromMatches refine_shutter(const TrackedFrame& frame,
+                                               Features& features,
+                                               const PoseFromMatches& pose,
+                                               const Map& map);
   [[nodiscard]] std::vector<LandmarkId> local_landmarks(TrackedFrame& frame,
                                                         const Matches& matches,
                                                         const Map& map) const;
@@ -99,6 +120,7 @@ class Tracker {
   std::optional<TrackedFrame> last_;  // the last frame with a pose
   Eigen::Isometry3d T_reference_last_ = Eigen::Isometry3d::Identity();
   MotionModel motion_;
+  ReadoutEstimator readout_;
   bool lost_ = false;
 };
 

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/system/config.hpp"
+
+#include "stillmap/core/error.hpp"
+
+namespace stillmap {
+
+void SystemConfig::check() const {
+  if (keyframe.min_gap_frames < mapping.lag_frames) {
+    throw Error(
+        "keyframe.min_gap_frames is {}: expected at least mapping.lag_frames ({}), so that "
+        "one key frame's mapping ends before the next begins",
+        keyframe.min_gap_frames,
+        mapping.lag_frames);
+  }
+  if (keyframe.max_gap_frames < keyframe.min_gap_frames) {
+    throw Error("keyframe.max_gap_frames is {}: expected at least keyframe.min_gap_frames ({})",
+                keyframe.max_gap_frames,
+                keyframe.min_gap_frames);
+  }
+  if (tracking.orb.weak_corner_threshold > tracking.orb.corner_threshold) {
+    throw Error(
+        "tracking.weak_corner_threshold is {}: expected at most tracking.corner_threshold ({})",
+        tracking.orb.weak_corner_threshold,
+        tracking.orb.corner_threshold);
+  }
+  if (loop.enabled) {
+    throw Error("loop.enabled is true: closing loops is not in this version; set it to false");
+  }
+}
+
+}  // namespace stillmap

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "stillmap/cloud/local_cloud.hpp"
+#include "stillmap/core/fields.hpp"
+#include "stillmap/features/orb_extractor.hpp"
+#include "stillmap/mapping/local_mapper.hpp"
+#include "stillmap/optim/measurement_model.hpp"
+#include "stillmap/tracking/keyframe_policy.hpp"
+#include "stillmap/tracking/relocalizer.hpp"
+#include "stillmap/tracking/tracker.hpp"
+
+namespace stillmap {
+
+struct LoopConfig {
+  bool enabled = false;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("enabled", self.enabled, FieldInfo{"close loops: not in this version, must be false"});
+  }
+};
+
+/// Features and tracking, which share the group `tracking`.
+struct TrackingConfig {
+  OrbConfig orb;
+  TrackerConfig tracker;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    OrbConfig::fields(self.orb, visit);
+    TrackerConfig::fields(self.tracker, visit);
+  }
+};
+
+/// All settings of a run. The defaults need no file.
+struct SystemConfig {
+  std::uint32_t seed = 0;
+  TrackingConfig tracking;
+  MeasurementConfig measurement;
+  KeyframePolicyConfig keyframe;
+  RelocalizerConfig relocalization;
+  MappingConfig mapping;
+  LoopConfig loop;
+  LocalCloudConfig cloud;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("seed", self.seed, FieldInfo{"of every random choice"});
+    visit.group("tracking", self.tracking);
+    visit.group("measurement", self.measurement);
+    visit.group("keyframe", self.keyframe);
+    visit.group("relocalization", self.relocalization);
+    visit.group("mapping", self.mapping);
+    visit.group("loop", self.loop);
+    visit.group("cloud", self.cloud);
+  }
+
+  /// Rules that concern several values. Throws Error naming the keys.
+  void check() const;
+};
+
+}  // namespace stillmap

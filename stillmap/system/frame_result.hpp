@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "stillmap/tracking/tracked_frame.hpp"
+
+namespace stillmap {
+
+struct StageTime {
+  std::string_view stage;
+  double ms = 0;
+};
+
+/// What the system tells of one frame.
+struct FrameResult {
+  TrackedFrame tracked;
+  bool is_keyframe = false;
+  double pose_ms = 0;             ///< from the frame's arrival to its pose
+  std::vector<StageTime> stages;  ///< of this thread, in order; "mapping" includes waiting for it
+};
+
+}  // namespace stillmap

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+
+namespace stillmap {
+
+/// Wall-clock time since it was made or last read. For reports only: no result depends on it.
+class Stopwatch {
+ public:
+  /// Milliseconds since the last lap.
+  double lap_ms() {
+    const Clock::time_point now = Clock::now();
+    const double ms = std::chrono::duration<double, std::milli>(now - last_).count();
+    last_ = now;
+    return ms;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point last_ = Clock::now();
+};
+
+}  // namespace stillmap

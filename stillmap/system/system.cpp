@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/system/system.hpp"
+
+#include <limits>
+
+#include "stillmap/cloud/local_cloud.hpp"
+#include "stillmap/core/error.hpp"
+#include "stillmap/mapping/map_adjustment.hpp"
+#include "stillmap/system/stopwatch.hpp"
+
+namespace stillmap {
+namespace {
+
+const SystemConfig& checked(const SystemConfig& config) {
+  config.check();
+  return config;
+}
+
+constexpr std::int64_t kAll = std::numeric_limits<std::int64_t>::max();
+
+}  // namespace
+
+System::System(const SystemConfig& config, const CameraModel& camera, int threads)
+    : config_(checked(config)),
+      camera_(camera),
+      rays_(pixel_rays(camera)),
+      extractor_(config.tracking.orb, camera),
+      measure_(config.measurement, extractor_.level_scales()),
+      map_(extractor_.level_scales()),
+      tracker_(config.tracking.tracker, config.relocalization, camera, measure_, config.seed),
+      worker_(threads > 1 ? std::make_unique<Worker>() : nullptr),
+      mapping_jobs_(worker_.get()),
+      cloud_jobs_(worker_.get()) {}
+
+FrameResult System::process(const FramePtr& frame) {
+  Stopwatch total, stage;
+  FrameResult result;
+  for (const MapUpdate& update : mapping_jobs_.collect_due(frame_number_)) map_.apply(update);
+  collect_clouds(frame_number_);
+  result.stages.push_back({"mapping", stage.lap_ms()});
+
+  Features features = extractor_.extract(frame->gray, frame->depth);
+  result.stages.push_back({"features", stage.lap_ms()});
+
+  result.tracked = track(*frame, std::move(features));
+  result.stages.push_back({"tracking", stage.lap_ms()});
+  result.pose_ms = total.lap_ms();
+
+  TrackedFrame& tracked = result.tracked;
+  const auto gap = static_cast<int>(frame_number_ - keyframe_number_);
+  if (tracked.status == TrackingStatus::kInitialized ||
+      wants_keyframe(config_.keyframe, tracked, gap, map_)) {
+    tracked.reference = insert_keyframe(frame, tracked);
+    result.is_keyframe = true;
+  }
+  if (has_pose(tracked)) record(*frame, tracked, tracked.T_world_camera);
+  result.stages.push_back({"keyframe", stage.lap_ms()});
+  lost_ = !has_pose(tracked);
+  ++frame_number_;
+  return result;
+}
+
+TrackedFrame System::track(const RgbdFrame& frame, Features features) {
+  if (map_.keyframes().empty()) {
+    int with_depth = 0;
+    for (std::size_t i = 0; i < features.size(); ++i) {
+      with_depth += measure_.has_depth(features, i) ? 1 : 0;
+    }
+    if (with_depth >= config_.tracking.tracker.min_inliers) {
+      return tracker_.start(frame, std::move(features));
+    }
+    TrackedFrame lost;
+    lost.id = frame.id;
+    lost.stamp_s = frame.stamp.seconds;
+    lost.landmarks.assign(features.size(), LandmarkId{});
+    lost.features = std::make_shared<const Features>(std::move(features));
+    return lost;
+  }
+  TrackedFrame tracked = tracker_.track(frame, std::move(features), map_);
+  count_landmarks(tracked);
+  return tracked;
+}
+
+void System::count_landmarks(const TrackedFrame& tracked) {
+  if (!has_pose(tracked)) return;
+  for (const LandmarkId id : tracked.expected) map_.count_expected(id);
+  for (const LandmarkId id : tracked.landmarks) {
+    if (id.valid()) map_.count_found(id);
+  }
+}
+
+KeyframeId System::insert_keyframe(const FramePtr& frame, const TrackedFrame& tracked) {
+  Keyframe keyframe;
+  keyframe.frame = frame->id;
+  keyframe.stamp = frame->stamp;
+  keyframe.T_world_camera = tracked.T_world_camera;
+  keyframe.features = tracked.features;
+  const KeyframeId id = map_.add_keyframe(std::move(keyframe));
+  for (std::uint32_t i = 0; i < tracked.landmarks.size(); ++i) {
+    if (!tracked.landmarks[i].valid()) continue;
+    map_.add_observation(tracked.landmarks[i], {id, i});
+    map_.refresh(tracked.landmarks[i]);
+  }
+  create_landmarks_from_depth(map_, id, camera_, measure_, config_.mapping.creation);
+  (void)map_.take_changes();  // the owner knows them; only windows hand changes on
+  tracker_.set_reference(id, map_);
+  keyframe_number_ = frame_number_;
+
+  std::vector<KeyframeId> core = mapping_core(map_, id, config_.mapping);
+  auto window = std::make_shared<Map>(map_.window(core));
+  mapping_jobs_.submit(
+      frame_number_ + config_.mapping.lag_frames, [window, core = std::move(core), this] {
+        return map_locally(std::move(*window), core, camera_, measure_, config_.mapping);
+      });
+  cloud_jobs_.submit(frame_number_ + config_.mapping.lag_frames, [frame, id, this] {
+    return std::pair(id,
+                     std::make_shared<const PointCloud>(local_cloud(*frame, rays_, config_.cloud)));
+  });
+  return id;
+}
+
+void System::collect_clouds(std::int64_t frame) {
+  for (auto& [id, cloud] : cloud_jobs_.collect_due(frame)) clouds_[id] = std::move(cloud);
+}
+
+void System::record(const RgbdFrame& frame,
+                    const TrackedFrame& tracked,
+                    const Eigen::Isometry3d& T_world_camera) {
+  records_.push_back({frame.stamp,
+                      tracked.reference,
+                      map_.T_world_keyframe(tracked.reference).inverse() * T_world_camera});
+}
+
+RunResult System::finish() {
+  for (const MapUpdate& update : mapping_jobs_.collect_due(kAll)) map_.apply(update);
+  collect_clouds(kAll);
+
+  RunResult result;
+  result.lost_at_end = lost_;
+  result.trajectory = final_trajectory();
+  for (const auto& [id, keyframe] : map_.keyframes()) {
+    result.keyframes.push_back({keyframe.stamp, keyframe.T_world_camera});
+  }
+  result.map = final_cloud();
+  return result;
+}
+
+Trajectory System::final_trajectory() const {
+  Trajectory trajectory;
+  trajectory.reserve(records_.size());
+  for (const FrameRecord& record : records_) {
+    trajectory.push_back(
+        {record.stamp, map_.T_world_keyframe(record.reference) * record.T_reference_frame});
+  }
+  return trajectory;
+}
+
+PointCloud System::final_cloud() const {
+  std::vector<PosedCloud> posed;
+  for (const auto& [id, keyframe] : map_.keyframes()) {
+    posed.push_back({keyframe.T_world_camera, clouds_.at(id).get()});
+  }
+  return global_cloud(posed, config_.cloud.voxel_size_m);
+}
+
+}  // namespace stillmap

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+
+#include "stillmap/cloud/global_cloud.hpp"
+#include "stillmap/core/rgbd_frame.hpp"
+#include "stillmap/core/trajectory.hpp"
+#include "stillmap/map/map.hpp"
+#include "stillmap/system/config.hpp"
+#include "stillmap/system/frame_result.hpp"
+#include "stillmap/system/job_ledger.hpp"
+#include "stillmap/system/worker.hpp"
+
+namespace stillmap {
+
+/// All that a finished run knows, under final poses.
+struct RunResult {
+  Trajectory trajectory;  ///< frames that were tracked
+  Trajectory keyframes;
+  PointCloud map;
+  bool lost_at_end = false;
+};
+
+/// The SLAM system: owns the map and every stage.
+///
+/// Frames go in one after another, in the order of their stamps; each comes back with its pose. The
+/// caller may be a plain loop: with `threads` 1 everything runs inside process(), with 2 or more
+/// mapping and clouds run beside it, and the results are the same bits.
+class System {
+ public:
+  /// Throws Error for settings that contradict each other.
+  System(const SystemConfig& config, const CameraModel& camera, int threads);
+
+  /// Tracks a frame; it may become a key frame. Frames have the camera's size.
+  FrameResult process(const FramePtr& frame);
+
+  /// Ends the run: waits for pending work, adjusts the whole map, assembles the cloud. Call once.
+  [[nodiscard]] RunResult finish();
+
+  [[nodiscard]] const Map& map() const { return map_; }
+  /// Readout time of the camera's rolling shutter, as learnt so far.
+  [[nodiscard]] double readout_s() const { return tracker_.readout_s(); }
+
+ private:
+  /// A frame's pose, held relative to a key frame so that later optimisation reaches it.
+  struct FrameRecord {
+    Stamp stamp;
+    KeyframeId reference;
+    Eigen::Isometry3d T_reference_frame;
+  };
+
+  [[nodiscard]] TrackedFrame track(const RgbdFrame& frame, Features features);
+  [[nodiscard]] KeyframeId insert_keyframe(const FramePtr& frame, const TrackedFrame& tracked);
+  void count_landmarks(const TrackedFrame& tracked);
+  void collect_clouds(std::int64_t frame);
+  void record(const RgbdFrame& frame,
+              const TrackedFrame& tracked,
+              const Eigen::Isometry3d& T_world_camera);
+  [[nodiscard]] Trajectory final_trajectory() const;
+  [[nodiscard]] PointCloud final_cloud() const;
+
+  SystemConfig config_;
+  CameraModel camera_;
+  cv::Mat2f rays_;
+  OrbExtractor extractor_;
+  MeasurementModel measure_;
+  Map map_;
+  Tracker tracker_;
+
+  std::int64_t frame_number_ = 0;     // of those processed
+  std::int64_t keyframe_number_ = 0;  // of the last key frame
+  bool lost_ = true;                  // until the first frame
+  std::vector<FrameRecord> records_;
+  std::map<KeyframeId, std::shared_ptr<const PointCloud>> clouds_;
+
+  std::unique_ptr<Worker> worker_;
+  JobLedger<MapUpdate> mapping_jobs_;
+  JobLedger<std::pair<KeyframeId, std::shared_ptr<const PointCloud>>> cloud_jobs_;
+};
+
+}  // namespace stillmap
