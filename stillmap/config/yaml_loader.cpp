@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <optional>
 #include <set>
@@ -33,10 +32,12 @@ std::string read_capped(const std::filesystem::path& file) {
   }
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw Error("{}: cannot be opened: {}", file.string(), std::strerror(errno));
+  if (!stream)
+    throw Error("{}: cannot be opened: {}", file.string(), std::generic_category().message(errno));
   std::string bytes(kMaxBytes + 1, '\0');
   stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  if (stream.bad()) throw Error("{}: cannot be read: {}", file.string(), std::strerror(errno));
+  if (stream.bad())
+    throw Error("{}: cannot be read: {}", file.string(), std::generic_category().message(errno));
   bytes.resize(static_cast<std::size_t>(stream.gcount()));
   if (bytes.size() > kMaxBytes) {
     throw Error("{}: larger than 1 MiB, not a configuration", file.string());

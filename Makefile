@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: Apache-2.0
+# From a fresh clone on Debian 12: `make demo` or `make test`, in either order. The work is CMake's;
+# this only installs what is missing and names the usual steps.
+.PHONY: setup build test demo bench format tidy clean
+.DEFAULT_GOAL := build
+
+program := build/release/bin/stillmap
+demo := out/demo
+# Its name changes with tools/setup's content, so an edit of the package list sets up again.
+setup_stamp := build/.setup-$(firstword $(shell cksum tools/setup))
+
+setup: $(setup_stamp)
+
+$(setup_stamp):
+	@tools/setup
+	@mkdir -p build && rm -f build/.setup-* && touch $@
+
+build: setup
+	@test -f build/release/build.ninja || cmake --preset release
+	@cmake --build --preset release --parallel
+
+test: build
+	@ctest --preset release --parallel "$$(nproc)" --no-tests=error
+
+demo: build $(demo)/sequence
+	@$(program) run $(demo)/sequence --out $(demo)/run
+	@echo
+	@echo "trajectory  $(demo)/run/trajectory.txt"
+	@echo "map         $(demo)/run/map.ply"
+	@echo "report      $(demo)/run/report.html"
+
+# Rendered under another name first, so that an interrupted one is not taken for the whole.
+$(demo)/sequence: | build
+	@rm -rf $@ $@.partial && mkdir -p $(demo)
+	@$(program) synth $@.partial --scene empty --frames 150
+	@mv $@.partial $@
+
+bench: setup
+	@cmake --preset release -B build/bench -DSTILLMAP_BUILD_BENCHMARKS=ON -DSTILLMAP_BUILD_TESTS=OFF
+	@cmake --build build/bench --parallel
+	@set -e; for program in build/bench/bin/*_bench; do "$$program"; done
+
+format: setup
+	@tools/check_format --fix
+
+tidy: setup
+	@tools/setup clang-tidy
+	@cmake --preset tidy
+	@cmake --build --preset tidy --parallel
+
+clean:
+	rm -rf build out

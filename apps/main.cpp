@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <opencv2/core/version.hpp>
+
+#include "apps/command_line.hpp"
+#include "apps/commands.hpp"
+#include "stillmap/core/error.hpp"
+#include "version.hpp"
+
+namespace stillmap {
+
+void print_output(std::string_view text) {
+  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+  if (!written || std::fflush(stdout) != 0) throw Error("standard output cannot be written");
+}
+
+namespace {
+
+constexpr int kInternalError = 1;
+constexpr int kBadInput = 2;
+
+constexpr const char* kExamples =
+    "Examples:\n"
+    "  stillmap synth office --scene walking_xyz   render a sequence with people and its truth\n"
+    "  stillmap run office --out result            trajectory, map and report of a sequence\n"
+    "  stillmap run office --out result --set tracking.features=2000\n"
+    "  stillmap evaluate trajectory office/groundtruth.txt result/trajectory.txt\n"
+    "  stillmap config                             every setting, its default and its meaning\n";
+
+std::string version_text() {
+  const std::string commit = kCommit.empty() ? "" : fmt::format(" (commit {})", kCommit);
+  return fmt::format("stillmap {}{}\nOpenCV {}, {}\n{}",
+                     kVersion,
+                     commit,
+                     CV_VERSION,
+                     kLibraryVersions,
+                     kCompiler);
+}
+
+using AddCommand = void (*)(CLI::App&, CommandResult&);
+
+// In the order of --help.
+const std::vector<AddCommand> kCommands = {};
+
+int run(const std::vector<std::string>& arguments) {
+  CommandResult result;
+  CLI::App app("RGB-D SLAM: the camera's path and a clean 3-D map of the static world", "stillmap");
+  app.set_version_flag("--version", version_text, "Print the versions of program and libraries");
+  app.require_subcommand(1);
+  for (const AddCommand add_command : kCommands) add_command(app, result);
+  app.footer(kExamples);  // last, for subcommands would inherit it
+  run_command_line(app, arguments);
+  return result.exit_code;
+}
+
+}  // namespace
+}  // namespace stillmap
+
+int main(int argc, char** argv) {
+  try {
+    return stillmap::run(std::vector<std::string>(argv + 1, argv + argc));
+  } catch (const stillmap::Error& error) {
+    fmt::print(stderr, "stillmap: {}\n", error.what());
+    return stillmap::kBadInput;
+  } catch (const std::bad_alloc&) {
+    std::fputs("stillmap: internal error: out of memory\n", stderr);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "stillmap: internal error: {}\n", error.what());
+  } catch (...) {
+    std::fputs("stillmap: internal error of unknown kind\n", stderr);
+  }
+  return stillmap::kInternalError;
+}
