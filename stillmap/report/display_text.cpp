@@ -11,7 +11,7 @@ namespace {
 std::string with_unit(double value, const char* unit) {
   const double size = std::abs(value);
   const int decimals = size >= 99.95 ? 0 : size >= 9.995 ? 1 : 2;
-  return fmt::format("{:.{}f} {}", value, decimals, unit);
+  return fmt::format("{:.{}f}\u00A0{}", value, decimals, unit);
 }
 
 const char* const kDash = "\xE2\x80\x93";
@@ -31,7 +31,8 @@ std::string duration_text(double milliseconds) {
 
 std::string memory_text(double megabytes) {
   if (!std::isfinite(megabytes)) return kDash;
-  return megabytes < 1000 ? fmt::format("{:.0f} MB", megabytes) : with_unit(megabytes / 1000, "GB");
+  return megabytes < 1000 ? fmt::format("{:.0f}\u00A0MB", megabytes)
+                          : with_unit(megabytes / 1000, "GB");
 }
 
 std::string count_text(std::size_t count) {
@@ -46,9 +47,9 @@ std::string count_text(std::size_t count) {
 
 std::string share_text(std::size_t part, std::size_t whole) {
   if (whole == 0) return kDash;
-  if (part >= whole) return "100 %";
+  if (part >= whole) return "100\u00A0%";
   const double percent = 100.0 * static_cast<double>(part) / static_cast<double>(whole);
-  return fmt::format("{:.1f} %", std::floor(percent * 10) / 10);
+  return fmt::format("{:.1f}\u00A0%", std::floor(percent * 10) / 10);
 }
 
 }  // namespace stillmap

@@ -11,17 +11,17 @@ namespace {
 const char* const kDash = "\xE2\x80\x93";
 
 TEST(DisplayText, units_fit_the_size) {
-  EXPECT_EQ(length_text(0.002134), "2.13 mm");
-  EXPECT_EQ(length_text(0.0124), "1.24 cm");
-  EXPECT_EQ(length_text(0.99), "99.0 cm");
-  EXPECT_EQ(length_text(1.052), "1.05 m");
-  EXPECT_EQ(length_text(123.4), "123 m");
-  EXPECT_EQ(length_text(0), "0.00 mm");
-  EXPECT_EQ(duration_text(0.512), "0.51 ms");
-  EXPECT_EQ(duration_text(12.34), "12.3 ms");
-  EXPECT_EQ(duration_text(1250), "1.25 s");
-  EXPECT_EQ(memory_text(411.6), "412 MB");
-  EXPECT_EQ(memory_text(1350), "1.35 GB");
+  EXPECT_EQ(length_text(0.002134), "2.13\u00A0mm");
+  EXPECT_EQ(length_text(0.0124), "1.24\u00A0cm");
+  EXPECT_EQ(length_text(0.99), "99.0\u00A0cm");
+  EXPECT_EQ(length_text(1.052), "1.05\u00A0m");
+  EXPECT_EQ(length_text(123.4), "123\u00A0m");
+  EXPECT_EQ(length_text(0), "0.00\u00A0mm");
+  EXPECT_EQ(duration_text(0.512), "0.51\u00A0ms");
+  EXPECT_EQ(duration_text(12.34), "12.3\u00A0ms");
+  EXPECT_EQ(duration_text(1250), "1.25\u00A0s");
+  EXPECT_EQ(memory_text(411.6), "412\u00A0MB");
+  EXPECT_EQ(memory_text(1350), "1.35\u00A0GB");
 }
 
 TEST(DisplayText, what_is_not_finite_is_a_dash) {
@@ -38,10 +38,10 @@ TEST(DisplayText, counts_have_groups_of_three) {
 }
 
 TEST(DisplayText, only_all_is_a_hundred_percent) {
-  EXPECT_EQ(share_text(360, 360), "100 %");
-  EXPECT_EQ(share_text(9999, 10000), "99.9 %");
-  EXPECT_EQ(share_text(1, 3), "33.3 %");
-  EXPECT_EQ(share_text(0, 5), "0.0 %");
+  EXPECT_EQ(share_text(360, 360), "100\u00A0%");
+  EXPECT_EQ(share_text(9999, 10000), "99.9\u00A0%");
+  EXPECT_EQ(share_text(1, 3), "33.3\u00A0%");
+  EXPECT_EQ(share_text(0, 5), "0.0\u00A0%");
   EXPECT_EQ(share_text(0, 0), kDash);
 }
 

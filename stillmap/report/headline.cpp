@@ -28,25 +28,26 @@ const char* why_no_error(const RunReport& report) {
 }
 
 Tile ate_tile(const RunReport& report) {
-  if (!report.ate) return {"Absolute error (ATE rmse)", kDash, why_no_error(report)};
+  if (!report.ate) return {"Trajectory error", kDash, why_no_error(report)};
   const Statistics& s = report.ate->translation_m;
-  return {"Absolute error (ATE rmse)",
+  return {"Trajectory error",
           length_text(s.rmse),
-          fmt::format("median {}, max {}", length_text(s.median), length_text(s.max))};
+          fmt::format("ATE rmse; median {}, max {}", length_text(s.median), length_text(s.max))};
 }
 
 Tile rpe_tile(const RunReport& report) {
-  if (!report.rpe) return {"Drift (RPE rmse)", kDash, why_no_error(report)};
-  return {"Drift (RPE rmse)",
-          length_text(report.rpe->translation_m.rmse),
-          fmt::format(
-              "and {:.2f}\u00B0 in {:g} s", report.rpe->rotation_deg.rmse, report.rpe->delta_s)};
+  if (!report.rpe) return {"Drift", kDash, why_no_error(report)};
+  return {
+      "Drift",
+      length_text(report.rpe->translation_m.rmse),
+      fmt::format(
+          "RPE rmse; {:.2f}\u00B0 in {:g} s", report.rpe->rotation_deg.rmse, report.rpe->delta_s)};
 }
 
 Tile tracked_tile(const RunReport& report) {
   return {"Frames tracked",
           share_text(report.frames_tracked, report.frames_total),
-          fmt::format("{} of {}, {}",
+          fmt::format("{} of {}; {}",
                       count_text(report.frames_tracked),
                       count_text(report.frames_total),
                       plural(report.keyframes.size(), "key frame"))};
@@ -54,18 +55,19 @@ Tile tracked_tile(const RunReport& report) {
 
 Tile time_tile(const RunReport& report) {
   const std::optional<TimeSummary> times = summarize_times(report.frame_ms);
-  if (!times) return {"Time per frame (median)", kDash, "no frames timed"};
+  if (!times) return {"Time per frame", kDash, "no frames timed"};
   return {
-      "Time per frame (median)",
+      "Time per frame",
       duration_text(times->median),
-      fmt::format("95 % within {}, max {}", duration_text(times->p95), duration_text(times->max))};
+      fmt::format(
+          "median; 95 % within {}, max {}", duration_text(times->p95), duration_text(times->max))};
 }
 
 Tile map_tile(const RunReport& report) {
   if (report.map == nullptr) return {"Map points", kDash, "no map was made"};
   return {"Map points",
           count_text(report.map->size()),
-          report.map->empty() ? "the map is empty" : "static surface"};
+          report.map->empty() ? "the map is empty" : "of the static world"};
 }
 
 Tile memory_tile(const RunReport& report) {

@@ -193,7 +193,7 @@
     const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     // On a narrow screen the first view's width is kept, not its height.
     const aspect = canvas.width / canvas.height;
-    const fy = Math.min(1, aspect / 1.5) / view.tan_half_fov;
+    const fy = Math.min(1, aspect / 1.78) / view.tan_half_fov;
     const a = (far + near) / (far - near), b = -2 * far * near / (far - near);
     const rows = [right.map((v) => v * fy / aspect), down.map((v) => -v * fy), forward.map((v) => v * a), forward];
     const offsets = rows.map((row) => -dot(row, eye));
@@ -231,7 +231,7 @@
     gl.uniformMatrix4fv(draw_points.at("clip_from_level"), false, matrix);
     gl.uniform3fv(draw_points.at("low"), data.low);
     gl.uniform3fv(draw_points.at("size"), data.step.map((s) => s * 65535));
-    gl.uniform1f(draw_points.at("point_px"), 1.7 * shown.size * data.spacing * fy * canvas.height / 2);
+    gl.uniform1f(draw_points.at("point_px"), 2.8 * shown.size * data.spacing * fy * canvas.height / 2);
     gl.bindVertexArray(cloud);
     gl.drawArrays(gl.POINTS, 0, data.points);
     if (shown.path) draw_strips(path, rgb.path, 3, matrix);

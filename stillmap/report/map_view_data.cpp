@@ -90,8 +90,9 @@ Json frusta_json(const Trajectory& keyframes, const Eigen::Matrix3d& R_level_wor
 
 Json view_json(const SceneFrame& scene) {
   const View view = view_along(scene, 1600, 900);
-  const Eigen::Vector3d target =
-      scene.box.isEmpty() ? Eigen::Vector3d(0, 0, 1) : Eigen::Vector3d(scene.box.center());
+  const Eigen::Vector3d target = scene.box.isEmpty()
+                                     ? Eigen::Vector3d(0, 0, 1)
+                                     : Eigen::Vector3d(scene.box.merged(scene.cameras).center());
   const Eigen::Vector3d eye = scene.R_level_world * view.T_camera_world.inverse().translation();
   const Eigen::Vector3d back = eye - target;
   const double distance = std::max(back.norm(), 0.1);

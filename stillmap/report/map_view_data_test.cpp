@@ -111,7 +111,8 @@ TEST(MapViewJson, paths_frusta_and_the_first_view) {
   const double pitch = j.at("view").at("pitch");
   const Eigen::Vector3d back(
       std::cos(pitch) * std::sin(yaw), -std::sin(pitch), -std::cos(pitch) * std::cos(yaw));
-  const Eigen::Vector3d eye = scene.box.center() + j.at("view").at("distance").get<double>() * back;
+  const Eigen::Vector3d eye =
+      scene.box.merged(scene.cameras).center() + j.at("view").at("distance").get<double>() * back;
   const View view = view_along(scene, 1600, 900);
   EXPECT_TRUE((view.T_camera_world * (scene.R_level_world.transpose() * eye)).isZero(1e-9));
   EXPECT_GT(pitch, 0.1);

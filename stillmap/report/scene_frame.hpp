@@ -16,9 +16,9 @@ namespace stillmap {
 /// z horizontal in the direction in which the cameras looked on the whole; origin as in the world.
 struct SceneFrame {
   Eigen::Matrix3d R_level_world = Eigen::Matrix3d::Identity();
-  Eigen::AlignedBox3d box;  ///< level axes; holds the map but for strays; empty for no map
-  Eigen::Vector3d camera = Eigen::Vector3d::Zero();  ///< mean place of the cameras, level axes
-  double spacing_m = 0.01;                           ///< typical distance of neighbouring points
+  Eigen::AlignedBox3d box;      ///< level axes; holds the map but for strays; empty for no map
+  Eigen::AlignedBox3d cameras;  ///< level axes; holds the cameras' places
+  double spacing_m = 0.01;      ///< typical distance of neighbouring points
 };
 
 /// Works out the floor's direction from the map itself, as the world's axes are those of a camera

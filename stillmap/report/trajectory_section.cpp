@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
-#include <array>
 #include <limits>
 
 #include <fmt/format.h>
 
 #include "stillmap/report/display_text.hpp"
 #include "stillmap/report/page_sections.hpp"
-#include "stillmap/report/page_text.hpp"
 #include "stillmap/report/svg_plot.hpp"
 
 namespace stillmap {
 namespace {
 
 constexpr int kEstimateColor = 0, kTruthColor = 1, kKeyframeColor = 4, kLostColor = 3;
+constexpr double kGap_s = 0.5;  // longer ones are left open in plots
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 struct Place {
@@ -27,7 +25,7 @@ std::vector<Place> places(const Trajectory& poses, double start_s) {
   std::vector<Place> out;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const double t = poses[i].stamp.seconds - start_s;
-    if (i > 0 && poses[i].stamp.seconds - poses[i - 1].stamp.seconds > 0.5) {
+    if (i > 0 && poses[i].stamp.seconds - poses[i - 1].stamp.seconds > kGap_s) {
       out.push_back({kNan, Eigen::Vector3d::Constant(kNan)});
     }
     out.push_back({t, poses[i].T_world_camera.translation()});
@@ -91,53 +89,94 @@ std::string note_html(const RunReport& report) {
           : "There is no ground truth to compare with.");
 }
 
+struct Paths {
+  std::vector<Place> estimate, keyframes, truth;
+};
+
+Paths paths_of(const RunReport& report) {
+  const double start = first_stamp_s(report);
+  return {places(report.estimate, start),
+          places(report.keyframes, start),
+          places(aligned_truth(report), start)};
+}
+
+Plot plot_from_above(const Paths& paths) {
+  Plot plot{.title = "Trajectory from above",
+            .x_label = "x (m)",
+            .y_label = "z (m)",
+            .series = {},
+            .width_px = 520,
+            .height_px = 528,
+            .equal_axes = true};
+  if (!paths.truth.empty()) {
+    plot.series.push_back(from_above("ground truth", paths.truth, kTruthColor, PlotStyle::kDashed));
+  }
+  plot.series.push_back(from_above("estimate", paths.estimate, kEstimateColor, PlotStyle::kLine));
+  plot.series.push_back(
+      from_above("key frames", paths.keyframes, kKeyframeColor, PlotStyle::kDots));
+  return plot;
+}
+
+// The three plots stand below each other: the first has the legend, the last the time's label.
+Plot plot_of_axis(const RunReport& report, const Paths& paths, int axis) {
+  const char name = "xyz"[axis];
+  const bool first = axis == 0;
+  const bool last = axis == 2;
+  Plot plot{.title = fmt::format("{} over time", name),
+            .x_label = last ? "time (s)" : "",
+            .y_label = fmt::format("{} (m)", name),
+            .series = {},
+            .width_px = 520,
+            .height_px = last ? 184 : 172};
+  if (!paths.truth.empty()) {
+    plot.series.push_back(
+        over_time(first ? "ground truth" : "", paths.truth, axis, kTruthColor, PlotStyle::kDashed));
+  }
+  plot.series.push_back(
+      over_time(first ? "estimate" : "", paths.estimate, axis, kEstimateColor, PlotStyle::kLine));
+  add_lost_marks(plot, report, first);
+  return plot;
+}
+
+// The residuals in a unit that suits the largest, with the pen lifted in gaps.
+struct ErrorCurve {
+  const char* unit = "m";
+  double per_metre = 1;
+  std::vector<Eigen::Vector2d> points;
+};
+
+ErrorCurve error_curve(const AteResult& ate, double start_s) {
+  ErrorCurve curve;
+  const double largest = ate.translation_m.max;
+  if (largest < 0.02) {
+    curve = {"mm", 1000, {}};
+  } else if (largest < 2) {
+    curve = {"cm", 100, {}};
+  }
+  double last = kNan;
+  for (const AtePair& pair : ate.pairs) {
+    const double t = pair.stamp.seconds - start_s;
+    if (t - last > kGap_s) curve.points.emplace_back(kNan, kNan);
+    curve.points.emplace_back(t, pair.error_m * curve.per_metre);
+    last = t;
+  }
+  return curve;
+}
+
 }  // namespace
 
 std::string trajectory_html(const RunReport& report) {
   if (report.estimate.empty()) return "<p>No frame was tracked, so there is no trajectory.</p>";
-  const double start = first_stamp_s(report);
-  const std::vector<Place> estimate = places(report.estimate, start);
-  const std::vector<Place> truth = places(aligned_truth(report), start);
-  const std::vector<Place> keyframes = places(report.keyframes, start);
-  Plot above{.title = "Trajectory from above",
-             .x_label = "x (m)",
-             .y_label = "z (m)",
-             .series = {},
-             .width_px = 520,
-             .height_px = 540,
-             .equal_axes = true};
-  if (!truth.empty()) {
-    above.series.push_back(from_above("ground truth", truth, kTruthColor, PlotStyle::kDashed));
-  }
-  above.series.push_back(from_above("estimate", estimate, kEstimateColor, PlotStyle::kLine));
-  above.series.push_back(from_above("key frames", keyframes, kKeyframeColor, PlotStyle::kDots));
-
-  std::string beside;
-  constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
-  for (int axis = 0; axis < 3; ++axis) {
-    const char* const name = kAxes[static_cast<std::size_t>(axis)];
-    Plot plot{.title = fmt::format("{} over time", name),
-              .x_label = axis == 2 ? "time (s)" : "",
-              .y_label = fmt::format("{} (m)", name),
-              .series = {},
-              .width_px = 520,
-              .height_px = 180};
-    const bool named = axis == 0;
-    if (!truth.empty()) {
-      plot.series.push_back(
-          over_time(named ? "ground truth" : "", truth, axis, kTruthColor, PlotStyle::kDashed));
-    }
-    plot.series.push_back(
-        over_time(named ? "estimate" : "", estimate, axis, kEstimateColor, PlotStyle::kLine));
-    add_lost_marks(plot, report, named);
-    beside += plot_svg(plot);
-  }
+  const Paths paths = paths_of(report);
+  std::string over_time_plots;
+  for (int axis = 0; axis < 3; ++axis)
+    over_time_plots += plot_svg(plot_of_axis(report, paths, axis));
   return fmt::format(
       "{}<div class=\"columns\"><div><h3>From above</h3>{}</div><div><h3>Over "
       "time</h3>{}</div></div>",
       note_html(report),
-      plot_svg(above),
-      beside);
+      plot_svg(plot_from_above(paths)),
+      over_time_plots);
 }
 
 std::string error_html(const RunReport& report) {
@@ -146,29 +185,20 @@ std::string error_html(const RunReport& report) {
                ? "<p>The ground truth has fewer than three poses in common with the run.</p>"
                : "<p>There is no ground truth, so the error is not known.</p>";
   }
-  const double largest = report.ate->translation_m.max;
-  const double per_metre = largest < 0.02 ? 1000 : largest < 2 ? 100 : 1;
-  const char* const unit = largest < 0.02 ? "mm" : largest < 2 ? "cm" : "m";
-  const double start = first_stamp_s(report);
-  PlotSeries error{.name = "distance to ground truth", .points = {}, .color = kEstimateColor};
-  double last = kNan;
-  for (const AtePair& pair : report.ate->pairs) {
-    const double t = pair.stamp.seconds - start;
-    if (t - last > 0.5) error.points.emplace_back(kNan, kNan);
-    error.points.emplace_back(t, pair.error_m * per_metre);
-    last = t;
-  }
+  const Statistics& statistics = report.ate->translation_m;
+  const ErrorCurve curve = error_curve(*report.ate, first_stamp_s(report));
   Plot plot{.title = "Error over time",
             .x_label = "time (s)",
-            .y_label = fmt::format("error ({})", unit),
-            .series = {std::move(error)},
+            .y_label = fmt::format("error ({})", curve.unit),
+            .series = {{.name = "distance to ground truth",
+                        .points = curve.points,
+                        .color = kEstimateColor}},
             .y_from_zero = true};
-  if (!report.ate->pairs.empty()) {
-    const double rmse = report.ate->translation_m.rmse * per_metre;
-    const double end = report.ate->pairs.back().stamp.seconds - start;
+  if (!curve.points.empty()) {
+    const double rmse = statistics.rmse * curve.per_metre;
     plot.series.push_back(
         {.name = "rmse",
-         .points = {{report.ate->pairs.front().stamp.seconds - start, rmse}, {end, rmse}},
+         .points = {{curve.points.front().x(), rmse}, {curve.points.back().x(), rmse}},
          .color = kLostColor,
          .style = PlotStyle::kDashed});
   }
@@ -177,8 +207,8 @@ std::string error_html(const RunReport& report) {
       "<p class=\"note\">Residuals of {} pairs of poses after the alignment: mean {}, "
       "standard deviation {}.</p>{}",
       count_text(report.ate->pairs.size()),
-      length_text(report.ate->translation_m.mean),
-      length_text(report.ate->translation_m.std),
+      length_text(statistics.mean),
+      length_text(statistics.std),
       plot_svg(plot));
 }
 
