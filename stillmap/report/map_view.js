@@ -17,10 +17,12 @@
   // --- programs -------------------------------------------------------------------------------
   const POINT_VERTEX = `#version 300 es
     in vec3 code; in vec3 color;
-    uniform mat4 clip_from_level; uniform vec3 low, size; uniform float point_px;
+    uniform mat4 clip_from_level; uniform vec3 low, size; uniform float point_px, highest_y;
     out vec3 shade;
     void main() {
-      gl_Position = clip_from_level * vec4(low + code * size, 1.0);
+      vec3 place = low + code * size;
+      gl_Position = clip_from_level * vec4(place, 1.0);
+      if (place.y < highest_y) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // outside: not drawn
       gl_PointSize = clamp(point_px / gl_Position.w, 1.5, 40.0);
       shade = color;
     }`;
@@ -178,7 +180,7 @@
   // --- the eye ---------------------------------------------------------------------------------
   const first = () => ({ ...data.view, target: [...data.view.target] });
   let view = first();
-  const shown = { path: true, frusta: true, size: 1 };
+  const shown = { path: true, frusta: true, ceiling: true, size: 1 };
 
   function axes() {  // right, down, forward of the eye, and its place
     const [cy, sy, cp, sp] = [Math.cos(view.yaw), Math.sin(view.yaw), Math.cos(view.pitch), Math.sin(view.pitch)];
@@ -232,6 +234,7 @@
     gl.uniform3fv(draw_points.at("low"), data.low);
     gl.uniform3fv(draw_points.at("size"), data.step.map((s) => s * 65535));
     gl.uniform1f(draw_points.at("point_px"), 2.8 * shown.size * data.spacing * fy * canvas.height / 2);
+    gl.uniform1f(draw_points.at("highest_y"), shown.ceiling ? -1e9 : data.head_y);
     gl.bindVertexArray(cloud);
     gl.drawArrays(gl.POINTS, 0, data.points);
     if (shown.path) draw_strips(path, rgb.path, 3, matrix);
@@ -325,13 +328,15 @@
     keys[event.key]();
   });
 
-  function reset() { view = first(); redraw(); }
-  function from_above() { view = { ...first(), yaw: 0, pitch: 1.57 }; redraw(); }
   const tool = (name) => figure.querySelector(`[data-tool=${name}]`);
+  function show_ceiling(yes) { shown.ceiling = tool("ceiling").checked = yes; redraw(); }
+  function reset() { view = first(); show_ceiling(true); }
+  function from_above() { view = { ...first(), yaw: 0, pitch: 1.57, distance: 1.15 * data.view.distance }; show_ceiling(false); }
   tool("reset").addEventListener("click", reset);
   tool("above").addEventListener("click", from_above);
   tool("path").addEventListener("change", (event) => { shown.path = event.target.checked; redraw(); });
   tool("frusta").addEventListener("change", (event) => { shown.frusta = event.target.checked; redraw(); });
+  tool("ceiling").addEventListener("change", (event) => show_ceiling(event.target.checked));
   tool("size").addEventListener("input", (event) => { shown.size = Math.pow(2, Number(event.target.value)); redraw(); });
   canvas.addEventListener("webglcontextlost", () => {
     figure.hidden = true;

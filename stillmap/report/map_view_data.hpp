@@ -21,8 +21,8 @@ inline constexpr std::size_t kMapViewPoints = 150'000;
 
 /// What map_view.js needs, as JSON without '<': in level axes, `positions` 16 bit little endian
 /// (value = low + code * step), `colors` 8 bit, both base64; `paths` of the cameras and `frusta` of
-/// at most 300 key frames as coordinates in metres; the `view` to begin with. At most `limit`
-/// points of the map, evenly spread.
+/// at most 300 key frames as coordinates in metres; the `view` to begin with; `head_y`, above which
+/// the ceiling is. At most `limit` points of the map, evenly spread.
 [[nodiscard]] std::string map_view_json(const PointCloud& map,
                                         const SceneFrame& scene,
                                         const Trajectory& cameras,

@@ -116,6 +116,7 @@ TEST(MapViewJson, paths_frusta_and_the_first_view) {
   const View view = view_along(scene, 1600, 900);
   EXPECT_TRUE((view.T_camera_world * (scene.R_level_world.transpose() * eye)).isZero(1e-9));
   EXPECT_GT(pitch, 0.1);
+  EXPECT_NEAR(j.at("head_y"), scene.cameras.center().y() - 0.4, 1e-9);
 }
 
 TEST(MapViewJson, of_nothing) {

@@ -47,6 +47,7 @@ const char* const kViewHtml = R"(<figure id="map-view" hidden>
 <button type="button" data-tool="above">From above</button>
 <label><input type="checkbox" data-tool="path" checked>trajectory</label>
 <label><input type="checkbox" data-tool="frusta" checked>key frames</label>
+<label><input type="checkbox" data-tool="ceiling" checked>ceiling</label>
 <label>point size <input type="range" data-tool="size" min="-2" max="2" step="0.1" value="0"></label>
 <span class="note">Drag to turn, right button or two fingers to move, click and wheel or pinch to zoom.</span>
 </div>

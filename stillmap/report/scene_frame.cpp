@@ -181,8 +181,13 @@ View view_along(const SceneFrame& scene, int width_px, int height_px) {
   return view;
 }
 
-View view_from_above(const SceneFrame& scene, int width_px, int height_px) {
+double head_height(const SceneFrame& scene) {
   constexpr double kHeadroom_m = 0.4;
+  if (!scene.cameras.isEmpty()) return scene.cameras.center().y() - kHeadroom_m;
+  return scene.box.isEmpty() ? 0.0 : scene.box.min().y() - kHeadroom_m;
+}
+
+View view_from_above(const SceneFrame& scene, int width_px, int height_px) {
   constexpr double kEyeHeight_m = 10;
   View view;
   view.width_px = width_px;
@@ -195,8 +200,7 @@ View view_from_above(const SceneFrame& scene, int width_px, int height_px) {
   view.scale = 0.92 * std::min(width_px / sizes.x(), height_px / sizes.z());
   view.near_m = kEyeHeight_m;
   Eigen::Vector3d eye = box.center();
-  const double top = scene.cameras.isEmpty() ? box.min().y() : scene.cameras.center().y();
-  eye.y() = top - kHeadroom_m - kEyeHeight_m;
+  eye.y() = head_height(scene) - kEyeHeight_m;
   const Eigen::Matrix3d R_world_level = scene.R_level_world.transpose();
   view.T_camera_world = look_at(R_world_level * eye,
                                 R_world_level * (eye + Eigen::Vector3d::UnitY()),

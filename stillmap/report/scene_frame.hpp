@@ -33,6 +33,10 @@ struct SceneFrame {
 /// A perspective view along the scene from behind and slightly above the cameras.
 [[nodiscard]] View view_along(const SceneFrame& scene, int width_px, int height_px);
 
+/// Level y coordinate a little over the cameras: what is higher (has a smaller y) hangs over their
+/// heads. The top of the map without cameras.
+[[nodiscard]] double head_height(const SceneFrame& scene);
+
 /// An orthographic view from above that leaves out what hangs over the cameras' heads.
 [[nodiscard]] View view_from_above(const SceneFrame& scene, int width_px, int height_px);
 
