@@ -9,7 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "stillmap/report/metrics_json.hpp"
+#include "stillmap/eval/metrics_json.hpp"
 #include "stillmap/report/time_summary.hpp"
 
 namespace stillmap {
@@ -33,22 +33,17 @@ Json camera_json(const CameraModel& camera) {
           {"depth_factor", camera.depth_factor}};
 }
 
-Json frames_json(const RunReport& report) {
+Json all_frames_json(const RunReport& report) {
   Json skipped = Json::array();
   for (const SkippedFrame& frame : report.skipped) {
     skipped.push_back({{"stamp", frame.stamp.text}, {"message", frame.message}});
   }
   Json lost = Json::array();
   for (const Stamp& stamp : report.lost) lost.push_back(stamp.text);
-  Json ratio;
-  if (report.frames_total > 0) {
-    ratio = static_cast<double>(report.frames_tracked) / static_cast<double>(report.frames_total);
-  }
-  return {{"total", report.frames_total},
-          {"tracked", report.frames_tracked},
-          {"ratio", ratio},
-          {"skipped", skipped},
-          {"lost", lost}};
+  Json json = frames_json(report.frames_total, report.frames_tracked);
+  json["skipped"] = skipped;
+  json["lost"] = lost;
+  return json;
 }
 
 Json times_json(std::span<const double> values, bool with_max) {
@@ -94,7 +89,7 @@ std::string report_json(const RunReport& report) {
   const Json json = {{"version", report.version},
                      {"sequence", report.sequence},
                      {"camera", camera_json(report.camera)},
-                     {"frames", frames_json(report)},
+                     {"frames", all_frames_json(report)},
                      {"keyframes", report.keyframes.size()},
                      {"time", time_json(report)},
                      {"memory", {{"peak_mb", optional_json(report.peak_memory_mb)}}},

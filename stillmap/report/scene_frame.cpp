@@ -11,6 +11,7 @@
 namespace stillmap {
 namespace {
 
+constexpr double kPointSize = 2.0;  // in spacings: surfaces look closed
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 std::vector<Eigen::Vector3d> finite_points(const PointCloud& map, std::size_t at_most) {
@@ -134,9 +135,8 @@ SceneFrame scene_frame(const PointCloud& map, const Trajectory& cameras) {
   scene.box = inner_box(points);
   scene.spacing_m = typical_spacing(points, scene.box);
   for (const StampedPose& pose : cameras) {
-    scene.camera += pose.T_world_camera.translation() / static_cast<double>(cameras.size());
+    scene.cameras.extend(scene.R_level_world * pose.T_world_camera.translation());
   }
-  scene.camera = scene.R_level_world * scene.camera;
   return scene;
 }
 
@@ -157,35 +157,50 @@ View view_along(const SceneFrame& scene, int width_px, int height_px) {
   view.width_px = width_px;
   view.height_px = height_px;
   view.scale = 1.1 * height_px;
-  view.point_size_m = 1.4 * scene.spacing_m;
+  view.point_size_m = kPointSize * scene.spacing_m;
   if (scene.box.isEmpty()) return view;
-  const Eigen::Vector3d target = scene.box.center();
-  // Near enough that the scene fills the picture, far enough that its sides are in it.
-  const double half_width = 0.5 * std::max(scene.box.sizes().x(), scene.box.sizes().y());
-  const double distance =
-      std::max(1.0, 0.3 * scene.box.sizes().z() + half_width * view.scale / (0.5 * width_px));
-  const Eigen::Vector3d eye =
-      target + distance * Eigen::Vector3d(0, -std::sin(25 * kDegree), -std::cos(25 * kDegree));
+  const Eigen::AlignedBox3d box = scene.box.merged(scene.cameras);
+  const Eigen::Vector3d target = box.center();
+  const double pitch = 25 * kDegree;
+  const Eigen::Vector3d forward(0, std::sin(pitch), std::cos(pitch));
+  const Eigen::Vector3d down(0, std::cos(pitch), -std::sin(pitch));
+  // As near as the box's corners allow, each of which must be in the picture; a little nearer, as
+  // hardly anything lies in corners.
+  double distance = 0.5;
+  for (int i = 0; i < 8; ++i) {
+    const Eigen::Vector3d corner =
+        box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)) - target;
+    const double aside = std::abs(corner.x()) / (0.5 * width_px);
+    const double below = std::abs(corner.dot(down)) / (0.5 * height_px);
+    distance = std::max(distance, view.scale * std::max(aside, below) - corner.dot(forward));
+  }
+  const Eigen::Vector3d eye = target - 0.82 * distance * forward;
   const Eigen::Matrix3d R_world_level = scene.R_level_world.transpose();
   view.T_camera_world = look_at(
       R_world_level * eye, R_world_level * target, R_world_level * Eigen::Vector3d::UnitY());
   return view;
 }
 
-View view_from_above(const SceneFrame& scene, int width_px, int height_px) {
+double head_height(const SceneFrame& scene) {
   constexpr double kHeadroom_m = 0.4;
+  if (!scene.cameras.isEmpty()) return scene.cameras.center().y() - kHeadroom_m;
+  return scene.box.isEmpty() ? 0.0 : scene.box.min().y() - kHeadroom_m;
+}
+
+View view_from_above(const SceneFrame& scene, int width_px, int height_px) {
   constexpr double kEyeHeight_m = 10;
   View view;
   view.width_px = width_px;
   view.height_px = height_px;
   view.orthographic = true;
-  view.point_size_m = 1.4 * scene.spacing_m;
+  view.point_size_m = kPointSize * scene.spacing_m;
   if (scene.box.isEmpty()) return view;
-  const Eigen::Vector3d sizes = scene.box.sizes().cwiseMax(0.1);
+  const Eigen::AlignedBox3d box = scene.box.merged(scene.cameras);
+  const Eigen::Vector3d sizes = box.sizes().cwiseMax(0.1);
   view.scale = 0.92 * std::min(width_px / sizes.x(), height_px / sizes.z());
   view.near_m = kEyeHeight_m;
-  Eigen::Vector3d eye = scene.box.center();
-  eye.y() = scene.camera.y() - kHeadroom_m - kEyeHeight_m;
+  Eigen::Vector3d eye = box.center();
+  eye.y() = head_height(scene) - kEyeHeight_m;
   const Eigen::Matrix3d R_world_level = scene.R_level_world.transpose();
   view.T_camera_world = look_at(R_world_level * eye,
                                 R_world_level * (eye + Eigen::Vector3d::UnitY()),

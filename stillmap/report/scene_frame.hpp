@@ -16,9 +16,9 @@ namespace stillmap {
 /// z horizontal in the direction in which the cameras looked on the whole; origin as in the world.
 struct SceneFrame {
   Eigen::Matrix3d R_level_world = Eigen::Matrix3d::Identity();
-  Eigen::AlignedBox3d box;  ///< level axes; holds the map but for strays; empty for no map
-  Eigen::Vector3d camera = Eigen::Vector3d::Zero();  ///< mean place of the cameras, level axes
-  double spacing_m = 0.01;                           ///< typical distance of neighbouring points
+  Eigen::AlignedBox3d box;      ///< level axes; holds the map but for strays; empty for no map
+  Eigen::AlignedBox3d cameras;  ///< level axes; holds the cameras' places
+  double spacing_m = 0.01;      ///< typical distance of neighbouring points
 };
 
 /// Works out the floor's direction from the map itself, as the world's axes are those of a camera
@@ -32,6 +32,10 @@ struct SceneFrame {
 
 /// A perspective view along the scene from behind and slightly above the cameras.
 [[nodiscard]] View view_along(const SceneFrame& scene, int width_px, int height_px);
+
+/// Level y coordinate a little over the cameras: what is higher (has a smaller y) hangs over their
+/// heads. The top of the map without cameras.
+[[nodiscard]] double head_height(const SceneFrame& scene);
 
 /// An orthographic view from above that leaves out what hangs over the cameras' heads.
 [[nodiscard]] View view_from_above(const SceneFrame& scene, int width_px, int height_px);

@@ -83,7 +83,8 @@ TEST(SceneFrame, views_show_the_room) {
   EXPECT_GT(near_left.y(), far_right.y());
 
   const View along = view_along(scene, 300, 200);
-  const Eigen::Vector3d center = project_point(along, scene.box.center()).value();
+  const Eigen::Vector3d center =
+      project_point(along, scene.box.merged(scene.cameras).center()).value();
   EXPECT_NEAR(center.x(), 150, 2);
   EXPECT_NEAR(center.y(), 100, 2);
   EXPECT_LT(project_point(along, {-1, 1.2, 2})->x(), project_point(along, {1, 1.2, 2})->x());

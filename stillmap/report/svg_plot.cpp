@@ -13,7 +13,7 @@
 namespace stillmap {
 namespace {
 
-constexpr double kLeft = 62, kRight = 16, kTop = 34, kBottom = 46;  // margins, pixels
+constexpr double kLeft = 62, kRight = 16;  // margins, pixels
 constexpr double kLargest = 1e12;
 
 bool drawable(const Eigen::Vector2d& p) {
@@ -29,7 +29,7 @@ std::string grid(const PlotScale& scale, const Plot& plot) {
   const double x_px = scale.x.high_px - scale.x.low_px;
   const double y_px = scale.y.low_px - scale.y.high_px;
   const std::vector<double> xs = nice_ticks(scale.x.low, scale.x.high, static_cast<int>(x_px / 80));
-  const std::vector<double> ys = nice_ticks(scale.y.low, scale.y.high, static_cast<int>(y_px / 42));
+  const std::vector<double> ys = nice_ticks(scale.y.low, scale.y.high, static_cast<int>(y_px / 34));
   const std::vector<std::string> x_texts = tick_labels(xs);
   const std::vector<std::string> y_texts = tick_labels(ys);
   std::string out = "<g class=\"grid\">";
@@ -145,7 +145,7 @@ std::string legend(const Plot& plot) {
              marks ? fmt::format("M{:.1f} 20v-9", x + 12) : fmt::format("M{:.1f} 15h24", x));
     }
     append(out, "<text x=\"{:.1f}\" y=\"19\">{}</text>", x + 31, html_escape(series.name));
-    x += 31 + 7.2 * static_cast<double>(series.name.size()) + 18;  // about a letter's width
+    x += 31 + 6.3 * static_cast<double>(series.name.size()) + 18;  // about a letter's width
   }
   return out;
 }
@@ -174,8 +174,12 @@ PlotScale plot_scale(const Plot& plot) {
   if (plot.y_from_zero) y.add(0);
   ValueRange y_padded = y.padded(0.06);
   if (plot.y_from_zero) y_padded.low = 0;
-  const Eigen::AlignedBox2d box(Eigen::Vector2d(kLeft, kTop),
-                                Eigen::Vector2d(plot.width_px - kRight, plot.height_px - kBottom));
+  const bool legend = std::any_of(
+      plot.series.begin(), plot.series.end(), [](const PlotSeries& s) { return !s.name.empty(); });
+  const double top = legend ? 34 : 12;
+  const double bottom = plot.height_px - (plot.x_label.empty() ? 26 : 46);
+  const Eigen::AlignedBox2d box(Eigen::Vector2d(kLeft, top),
+                                Eigen::Vector2d(plot.width_px - kRight, bottom));
   return fit_scale(x.padded(plot.equal_axes ? 0.06 : 0), y_padded, box, plot.equal_axes);
 }
 
@@ -186,7 +190,7 @@ std::string plot_svg(const Plot& plot) {
          "aria-label=\"{3}\">",
          plot.width_px,
          plot.height_px,
-         std::min(plot.width_px, 560),
+         plot.width_px * 17 / 20,
          html_escape(plot.title));
   if (has_points(plot)) {
     const PlotScale scale = plot_scale(plot);

@@ -39,7 +39,8 @@ TEST(NiceTicks, labels_have_the_decimals_they_need) {
 TEST(PlotScale, corners_of_the_data_are_corners_of_the_box) {
   Plot plot;
   plot.width_px = 478;
-  plot.height_px = 180;  // a box of 400 x 100 pixels at (62, 34)
+  plot.height_px = 180;
+  plot.x_label = "x";  // a box of 400 x 100 pixels at (62, 34)
   plot.y_from_zero = true;
   plot.series.push_back({.name = "a", .points = {{10, 5}, {30, 100}, {kNan, 1e6}}});
   const PlotScale scale = plot_scale(plot);
@@ -54,6 +55,7 @@ TEST(PlotScale, equal_axes_have_equal_units) {
   Plot plot;
   plot.width_px = 478;
   plot.height_px = 180;
+  plot.x_label = "x";
   plot.equal_axes = true;
   plot.series.push_back({.name = "a", .points = {{-1, 0}, {1, 2}}});
   const PlotScale scale = plot_scale(plot);
@@ -80,6 +82,7 @@ TEST(PlotSvg, lines_go_through_the_scaled_points_and_break_where_there_is_none) 
   Plot plot;
   plot.width_px = 478;
   plot.height_px = 180;
+  plot.x_label = "x";
   plot.y_from_zero = true;
   plot.series.push_back({.name = "a", .points = {{10, 0}, {20, 106 / 1.06}, {kNan, 0}, {30, 0}}});
   const std::string svg = plot_svg(plot);

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "stillmap/io/image_io.hpp"
+#include "stillmap/report/display_text.hpp"
+#include "stillmap/report/frame_picture.hpp"
+#include "stillmap/report/map_picture.hpp"
+#include "stillmap/report/map_view_data.hpp"
+#include "stillmap/report/page_assets.hpp"
+#include "stillmap/report/page_sections.hpp"
+#include "stillmap/report/page_text.hpp"
+#include "stillmap/report/scene_frame.hpp"
+
+namespace stillmap {
+namespace {
+
+std::string figure_html(const ColorImage& picture,
+                        const std::string& alt,
+                        const std::string& caption) {
+  constexpr int kJpegQuality = 82;
+  const std::vector<std::uint8_t> jpeg = encode_jpeg(picture, kJpegQuality);
+  return fmt::format(
+      "<figure><img src=\"data:image/jpeg;base64,{}\" width=\"{}\" height=\"{}\" alt=\"{}\">"
+      "<figcaption>{}</figcaption></figure>",
+      base64(jpeg),
+      picture.mat.cols,
+      picture.mat.rows,
+      html_escape(alt),
+      caption);
+}
+
+ColorImage map_picture(const RunReport& report, const View& view) {
+  constexpr Rgb kPathColor = {225, 107, 0};
+  ColorImage picture = render_points(*report.map, view);
+  for (const std::vector<Eigen::Vector3d>& part : continuous_parts(report.estimate)) {
+    picture = draw_path(picture, view, part, kPathColor);
+  }
+  return picture;
+}
+
+const char* const kViewHtml = R"(<figure id="map-view" hidden>
+<canvas tabindex="0" aria-label="The map in three dimensions"></canvas>
+<div class="tools">
+<button type="button" data-tool="reset">Reset</button>
+<button type="button" data-tool="above">From above</button>
+<label><input type="checkbox" data-tool="path" checked>trajectory</label>
+<label><input type="checkbox" data-tool="frusta" checked>key frames</label>
+<label><input type="checkbox" data-tool="ceiling" checked>ceiling</label>
+<label>point size <input type="range" data-tool="size" min="-2" max="2" step="0.1" value="0"></label>
+<span class="note">Drag to turn, right button or two fingers to move, click and wheel or pinch to zoom.</span>
+</div>
+</figure>
+<p id="map-note" class="note">The view that can be turned needs JavaScript and WebGL 2; here are pictures of the map.</p>
+)";
+
+}  // namespace
+
+MapHtml map_html(const RunReport& report) {
+  if (report.map == nullptr) return {"<p>No map was made.</p>", ""};
+  const SceneFrame scene = scene_frame(*report.map, report.estimate);
+  if (scene.box.isEmpty()) return {"<p>The map is empty.</p>", ""};
+  const Eigen::Vector3d size = scene.box.sizes();
+  const std::string summary = fmt::format(
+      "<p class=\"note\">{} points, about {:.1f} \u00D7 {:.1f} \u00D7 {:.1f} m (width, height, "
+      "depth). "
+      "{}The camera's path is drawn over the map.</p>",
+      count_text(report.map->size()),
+      size.x(),
+      size.y(),
+      size.z(),
+      report.map->size() > kMapViewPoints
+          ? fmt::format("Shown are {} of them. ", count_text(kMapViewPoints))
+          : "");
+  const std::string pictures = figure_html(map_picture(report, view_along(scene, 960, 640)),
+                                           "The map along the scene",
+                                           "Along the scene") +
+                               figure_html(map_picture(report, view_from_above(scene, 960, 640)),
+                                           "The map from above",
+                                           "From above, without what is over the camera");
+  MapHtml html{.section = summary + kViewHtml + "<div class=\"columns\">" + pictures + "</div>",
+               .script = {}};
+  html.script = fmt::format(
+      "<script type=\"application/json\" id=\"map-data\">{}</script>\n<script>\n{}</script>",
+      map_view_json(*report.map, scene, report.estimate, report.keyframes),
+      map_view_js());
+  return html;
+}
+
+std::string samples_html(const RunReport& report) {
+  constexpr int kWidth_px = 640;
+  std::string figures;
+  const double start = first_stamp_s(report);
+  for (const SampleFrame& frame : report.samples) {
+    const ColorImage picture = draw_features(frame, kWidth_px);
+    if (picture.mat.empty()) continue;
+    const std::string caption = fmt::format("{:.2f} s: {} tracked, {} not",
+                                            frame.stamp.seconds - start,
+                                            count_text(frame.tracked_px.size()),
+                                            count_text(frame.untracked_px.size()));
+    figures += figure_html(picture, "Frame " + frame.stamp.text, caption);
+  }
+  if (figures.empty()) return "<p>No sample frames were kept.</p>";
+  return "<p class=\"note\">Features: <span class=\"ring tracked\"></span>tracked "
+         "<span class=\"ring other\"></span>found but not tracked</p><div class=\"samples\">" +
+         figures + "</div>";
+}
+
+}  // namespace stillmap
