@@ -124,6 +124,18 @@ TEST(LocalCloud, AgreesWithBruteForce) {
   EXPECT_EQ(cloud.colors, expected.colors);
 }
 
+TEST(LocalCloud, LeavesOutRaysThatAreNotFiniteOrTooSteep) {
+  const CameraModel camera = small_camera();
+  cv::Mat2f rays = pixel_rays(camera);
+  rays(0, 0)[0] = std::numeric_limits<float>::quiet_NaN();
+  rays(0, 1)[1] = std::numeric_limits<float>::infinity();
+  rays(0, 2)[0] = -1e30F;
+  const std::size_t pixels = rays.total();
+  const LocalCloudConfig fine{.max_depth_m = 6.0, .voxel_size_m = 0.001};  // a voxel for each pixel
+  EXPECT_EQ(local_cloud(frame_of(camera, 1.0F), rays, fine).size(), pixels - 3);
+  EXPECT_EQ(local_cloud(frame_of(camera, 1.0F), pixel_rays(camera), fine).size(), pixels);
+}
+
 TEST(LocalCloud, RefusesRaysOfAnotherSize) {
   const CameraModel camera = small_camera();
   EXPECT_THROW((void)local_cloud(frame_of(camera, 1.0F), cv::Mat2f(48, 63), {}), InternalError);
