@@ -17,7 +17,8 @@ namespace stillmap {
 /// Thins points to one a voxel: the mean of their positions and colours, the winner of their labels
 /// (see LabelVote). Voxel i along an axis covers [i, i + 1) * voxel_size_m.
 ///
-/// Takes 56 to 64 bytes a voxel; extract() takes 32 more while it sorts, and its output 16.
+/// Takes 56 to 64 bytes a voxel, 72 while its table grows; extract() takes 32 more, its output
+/// included.
 class VoxelGrid {
  public:
   /// Edge of a voxel, finite and > 0.
