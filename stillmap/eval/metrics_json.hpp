@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include <nlohmann/json.hpp>
+
+#include "stillmap/eval/ate.hpp"
+#include "stillmap/eval/rpe.hpp"
+
+namespace stillmap {
+
+// The objects that report.json and `stillmap evaluate --json` hold. Keys stay in this order; what
+// is not known is null.
+
+/// `{rmse, mean, median, std, min, max, pairs}`, metres.
+[[nodiscard]] nlohmann::ordered_json ate_json(const std::optional<AteResult>& ate);
+
+/// `{delta_s, pairs, trans: {rmse, mean, median, std, max}, rot_deg: {...}}`, metres and degrees.
+[[nodiscard]] nlohmann::ordered_json rpe_json(const std::optional<RpeResult>& rpe);
+
+/// `{total, tracked, ratio}`: associated pairs of images, poses in the trajectory, their ratio.
+[[nodiscard]] nlohmann::ordered_json frames_json(std::size_t total, std::size_t tracked);
+
+}  // namespace stillmap

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/eval/metrics_json.hpp"
+
+#include <gtest/gtest.h>
+
+namespace stillmap {
+namespace {
+
+TEST(MetricsJson, HasTheKeysInOrder) {
+  AteResult ate;
+  ate.translation_m = {.rmse = 6, .mean = 5, .median = 4, .std = 3, .min = 2, .max = 1};
+  ate.pairs.resize(7);
+  EXPECT_EQ(ate_json(ate).dump(),
+            R"({"rmse":6.0,"mean":5.0,"median":4.0,"std":3.0,"min":2.0,"max":1.0,"pairs":7})");
+  RpeResult rpe;
+  rpe.pairs = 9;
+  rpe.translation_m = {.rmse = 6, .mean = 5, .median = 4, .std = 3, .min = 2, .max = 1};
+  rpe.rotation_deg = {.rmse = 16, .mean = 15, .median = 14, .std = 13, .min = 12, .max = 11};
+  EXPECT_EQ(rpe_json(rpe).dump(),
+            R"({"delta_s":1.0,"pairs":9,)"
+            R"("trans":{"rmse":6.0,"mean":5.0,"median":4.0,"std":3.0,"max":1.0},)"
+            R"("rot_deg":{"rmse":16.0,"mean":15.0,"median":14.0,"std":13.0,"max":11.0}})");
+}
+
+TEST(MetricsJson, IsNullWhereNothingIsKnown) {
+  EXPECT_EQ(ate_json(std::nullopt).dump(),
+            R"({"rmse":null,"mean":null,"median":null,"std":null,"min":null,"max":null,)"
+            R"("pairs":null})");
+  EXPECT_EQ(rpe_json(std::nullopt).dump(),
+            R"({"delta_s":null,"pairs":null,)"
+            R"("trans":{"rmse":null,"mean":null,"median":null,"std":null,"max":null},)"
+            R"("rot_deg":{"rmse":null,"mean":null,"median":null,"std":null,"max":null}})");
+}
+
+TEST(MetricsJson, GivesTheShareOfTrackedFrames) {
+  EXPECT_EQ(frames_json(8, 6).dump(), R"({"total":8,"tracked":6,"ratio":0.75})");
+  EXPECT_EQ(frames_json(0, 0).dump(), R"({"total":0,"tracked":0,"ratio":null})");
+}
+
+}  // namespace
+}  // namespace stillmap

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/io/atomic_file.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <system_error>
+#include <utility>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "stillmap/core/error.hpp"
+
+namespace stillmap {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string reason(int error_number) {
+  return std::generic_category().message(error_number);
+}
+
+// A file descriptor that is closed when it goes.
+class Descriptor {
+ public:
+  explicit Descriptor(int fd) : fd_(fd) {}
+  Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  Descriptor& operator=(Descriptor&&) = delete;
+  ~Descriptor() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+
+  [[nodiscard]] int get() const { return fd_; }
+  [[nodiscard]] int close() { return ::close(std::exchange(fd_, -1)); }
+
+ private:
+  int fd_;
+};
+
+// Removes a file that did not get its final name.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(fs::path path) : path_(std::move(path)) {}
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  ~TemporaryFile() {
+    if (!path_.empty()) ::unlink(path_.c_str());
+  }
+
+  [[nodiscard]] const fs::path& path() const { return path_; }
+  void keep() { path_.clear(); }
+
+ private:
+  fs::path path_;
+};
+
+void write_all(const Descriptor& file, std::string_view bytes, const fs::path& path) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(file.get(), bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) throw Error("cannot write {}: {}", path.string(), reason(errno));
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+void close_checked(Descriptor& file, const fs::path& path) {
+  if (file.close() != 0) throw Error("cannot write {}: {}", path.string(), reason(errno));
+}
+
+void write_directly(const fs::path& path, std::string_view bytes) {
+  Descriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
+  if (file.get() < 0) throw Error("cannot write {}: {}", path.string(), reason(errno));
+  write_all(file, bytes, path);
+  close_checked(file, path);
+}
+
+struct OpenTemporary {
+  Descriptor file;
+  fs::path path;
+};
+
+// A new file beside `path`. The name holds the process id and a number, tried upwards, so that
+// neither other processes nor other threads nor what a killed process left behind get in the way.
+OpenTemporary open_temporary(const fs::path& path) {
+  for (int attempt = 0; attempt < 1000; ++attempt) {
+    fs::path name = path;
+    name += fmt::format(".tmp{}-{}", ::getpid(), attempt);
+    Descriptor file(::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+    if (file.get() >= 0) return {std::move(file), std::move(name)};
+    if (errno != EEXIST) throw Error("cannot write {}: {}", path.string(), reason(errno));
+  }
+  throw Error("cannot write {}: too many temporary files beside it; remove {}.tmp*",
+              path.string(),
+              path.string());
+}
+
+}  // namespace
+
+void write_file_atomically(const fs::path& path, std::string_view bytes) {
+  std::error_code ignored;
+  const fs::path target =
+      fs::is_symlink(path, ignored) ? fs::weakly_canonical(path, ignored) : path;
+  if (target.empty()) throw Error("cannot write a file without a name");
+  const fs::file_status status = fs::status(target, ignored);
+  if (fs::is_directory(status)) throw Error("cannot write {}: it is a folder", path.string());
+  if (fs::exists(status) && !fs::is_regular_file(status)) return write_directly(target, bytes);
+
+  OpenTemporary opened = open_temporary(target);
+  TemporaryFile temporary(opened.path);
+  write_all(opened.file, bytes, path);
+  close_checked(opened.file, path);
+  if (::rename(temporary.path().c_str(), target.c_str()) != 0) {
+    throw Error("cannot write {}: {}", path.string(), reason(errno));
+  }
+  temporary.keep();
+}
+
+std::string read_file(const fs::path& path, std::size_t max_bytes) {
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (file.get() < 0) throw Error("cannot read {}: {}", path.string(), reason(errno));
+  struct stat status = {};
+  if (::fstat(file.get(), &status) != 0) {
+    throw Error("cannot read {}: {}", path.string(), reason(errno));
+  }
+  if (S_ISDIR(status.st_mode)) throw Error("cannot read {}: it is a folder", path.string());
+  const std::size_t expected = static_cast<std::size_t>(std::max<off_t>(status.st_size, 0));
+
+  // One byte more than the size tells the end of the file with the same read; pipes and /proc say
+  // 0 and are read in growing steps.
+  std::string content(std::min(expected, max_bytes) + 1, '\0');
+  std::size_t size = 0;
+  while (size <= max_bytes) {
+    if (size == content.size()) content.resize(std::max<std::size_t>(2 * size, 65536));
+    const ssize_t count = ::read(file.get(), content.data() + size, content.size() - size);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) throw Error("cannot read {}: {}", path.string(), reason(errno));
+    if (count == 0) break;
+    size += static_cast<std::size_t>(count);
+  }
+  if (size > max_bytes) {
+    throw Error("{} is larger than {} bytes, the most that is read", path.string(), max_bytes);
+  }
+  content.resize(size);
+  return content;
+}
+
+bool path_exists(const fs::path& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored);
+}
+
+}  // namespace stillmap

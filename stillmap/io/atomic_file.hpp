@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace stillmap {
+
+/// Writes a whole file or leaves it as it was: the bytes go to a temporary name in the same folder,
+/// which then takes the file's name. Whatever reads `path` sees the old content or the new one,
+/// never a part. A link is followed; a device (/dev/stdout) is written directly. Throws Error when
+/// anything fails (no such folder, not writable, disk full), and leaves no temporary file.
+void write_file_atomically(const std::filesystem::path& path, std::string_view bytes);
+
+/// The whole content of a file. Throws Error when it cannot be read, is a folder, or is larger than
+/// `max_bytes`, before that much is allocated.
+[[nodiscard]] std::string read_file(const std::filesystem::path& path, std::size_t max_bytes);
+
+/// Whether something is at `path`; false also where that cannot be told (no permission).
+[[nodiscard]] bool path_exists(const std::filesystem::path& path);
+
+}  // namespace stillmap

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/io/image_io.hpp"
+
+#include <cmath>
+
+#include <opencv2/imgproc.hpp>
+
+#include "stillmap/core/error.hpp"
+#include "stillmap/io/atomic_file.hpp"
+#include "stillmap/io/jpeg_codec.hpp"
+#include "stillmap/io/png_codec.hpp"
+
+namespace stillmap {
+namespace {
+
+// Enough for 8192 x 8192 pixels of 24 bits that do not compress at all.
+constexpr std::size_t kMaxFileBytes = std::size_t{256} << 20U;
+
+std::string read_image_file(const std::filesystem::path& path) {
+  std::string bytes = read_file(path, kMaxFileBytes);
+  if (bytes.empty()) throw Error("{}: empty file, expected an image", path.string());
+  return bytes;
+}
+
+}  // namespace
+
+ColorImage read_color(const std::filesystem::path& path) {
+  const std::string bytes = read_image_file(path);
+  if (is_jpeg(bytes)) return ColorImage(decode_jpeg(bytes, path.string()));
+  if (is_png(bytes)) {
+    return ColorImage(cv::Mat3b(decode_png(bytes, PngKind::kRgb8, path.string())));
+  }
+  throw Error("{}: neither PNG nor JPEG, expected a colour image", path.string());
+}
+
+DepthImage read_depth(const std::filesystem::path& path, double depth_factor) {
+  STILLMAP_CHECK(depth_factor > 0.0);
+  const std::string bytes = read_image_file(path);
+  if (!is_png(bytes)) throw Error("{}: not a PNG, expected a 16-bit depth PNG", path.string());
+  const cv::Mat1w raw(decode_png(bytes, PngKind::kGray16, path.string()));
+  cv::Mat1f metres(raw.size());
+  const float factor = static_cast<float>(depth_factor);
+  for (int v = 0; v < raw.rows; ++v) {
+    const std::uint16_t* source = raw[v];
+    float* target = metres[v];
+    for (int u = 0; u < raw.cols; ++u) target[u] = static_cast<float>(source[u]) / factor;
+  }
+  return DepthImage(metres);
+}
+
+cv::Mat1b read_mask(const std::filesystem::path& path) {
+  const std::string bytes = read_image_file(path);
+  if (!is_png(bytes)) throw Error("{}: not a PNG, expected an 8-bit mask PNG", path.string());
+  return cv::Mat1b(decode_png(bytes, PngKind::kGray8, path.string()));
+}
+
+GrayImage to_gray(const ColorImage& color) {
+  GrayImage gray;
+  cv::cvtColor(color.mat, gray.mat, cv::COLOR_RGB2GRAY);
+  return gray;
+}
+
+std::vector<std::uint8_t> encode_jpeg(const ColorImage& color, int quality) {
+  return encode_jpeg_bytes(color.mat, quality);
+}
+
+std::string encode_png(const ColorImage& color) {
+  return encode_png_bytes(color.mat);
+}
+
+std::string encode_mask_png(const cv::Mat1b& mask) {
+  return encode_png_bytes(mask);
+}
+
+std::string encode_depth_png(const DepthImage& depth, double depth_factor) {
+  STILLMAP_CHECK(depth_factor > 0.0);
+  cv::Mat1w raw(depth.mat.size());
+  for (int v = 0; v < raw.rows; ++v) {
+    for (int u = 0; u < raw.cols; ++u) {
+      const double value = std::round(static_cast<double>(depth.mat(v, u)) * depth_factor);
+      const bool fits = value >= 0.0 && value <= 65535.0;  // false for NaN
+      raw(v, u) = fits ? static_cast<std::uint16_t>(value) : std::uint16_t{0};
+    }
+  }
+  return encode_png_bytes(raw);
+}
+
+}  // namespace stillmap

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "stillmap/core/images.hpp"
+
+namespace stillmap {
+
+// Readers go by a file's content, never by its name. They throw Error, naming the file, what it
+// holds and what was expected, for a file that is missing, truncated, damaged, of another kind or
+// of more than 8192 pixels a side. All are stateless and may run in any number of threads.
+
+/// A PNG (8-bit gray or RGB, transparency dropped) or JPEG, as RGB.
+[[nodiscard]] ColorImage read_color(const std::filesystem::path& path);
+
+/// A 16-bit gray PNG. Metres are the stored value / depth_factor; 0 stays 0 = missing.
+[[nodiscard]] DepthImage read_depth(const std::filesystem::path& path, double depth_factor);
+
+/// An 8-bit gray PNG whose pixels are numbers, such as the ids of objects.
+[[nodiscard]] cv::Mat1b read_mask(const std::filesystem::path& path);
+
+/// Brightness by ITU-R BT.601: 0.299 R + 0.587 G + 0.114 B.
+[[nodiscard]] GrayImage to_gray(const ColorImage& color);
+
+/// `quality` is from 1 to 100.
+[[nodiscard]] std::vector<std::uint8_t> encode_jpeg(const ColorImage& color, int quality);
+
+/// 8-bit RGB PNG.
+[[nodiscard]] std::string encode_png(const ColorImage& color);
+
+/// 8-bit gray PNG, the counterpart of read_mask.
+[[nodiscard]] std::string encode_mask_png(const cv::Mat1b& mask);
+
+/// 16-bit PNG of metres * depth_factor, rounded to the nearest. What is missing (0, negative, not
+/// finite) or beyond the range of 16 bits becomes 0.
+[[nodiscard]] std::string encode_depth_png(const DepthImage& depth, double depth_factor);
+
+}  // namespace stillmap

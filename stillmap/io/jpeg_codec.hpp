@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <opencv2/core/mat.hpp>
+
+namespace stillmap {
+
+[[nodiscard]] bool is_jpeg(std::string_view bytes);
+
+/// Decodes a gray or colour JPEG straight to RGB. `name` stands in the messages. Throws Error for
+/// CMYK, a side over kMaxImageSidePx (png_codec.hpp), a truncated or damaged file: also where the
+/// library would only warn and fill the rest with gray.
+[[nodiscard]] cv::Mat3b decode_jpeg(std::string_view bytes, const std::string& name);
+
+/// Encodes RGB with full colour resolution. `quality` is from 1 to 100.
+[[nodiscard]] std::vector<std::uint8_t> encode_jpeg_bytes(const cv::Mat3b& rgb, int quality);
+
+}  // namespace stillmap

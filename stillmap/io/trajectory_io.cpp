@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/io/trajectory_io.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "stillmap/core/error.hpp"
+#include "stillmap/core/se3.hpp"
+#include "stillmap/io/text_table.hpp"
+
+namespace stillmap {
+namespace {
+
+constexpr double kMaxCoordinateM = 1e9;  // beyond, squares and sums would lose all meaning
+
+StampedPose parse_pose(const TextTable& table, const TextRow& row) {
+  const auto n = [&](std::size_t column) { return table.number(row, column); };
+  const Eigen::Vector3d t(n(1), n(2), n(3));
+  if (t.cwiseAbs().maxCoeff() > kMaxCoordinateM) {
+    throw Error("{}: position beyond {} m, expected metres", table.place(row), kMaxCoordinateM);
+  }
+  Eigen::Vector4d q(n(4), n(5), n(6), n(7));
+  // TUM's files have four decimals, so that a norm is 1 to about 2e-4; a coarse bound tells numbers
+  // that are no quaternion at all.
+  if (q.cwiseAbs().maxCoeff() > 1e6 || q.norm() < 1e-6) {
+    throw Error("{}: quaternion of length {:.3g}, expected about 1", table.place(row), q.norm());
+  }
+  q.normalize();
+  return {table.stamp(row, 0), make_pose(Eigen::Quaterniond(q[3], q[0], q[1], q[2]), t)};
+}
+
+// Keeps the last of equal stamps.
+void sort_by_stamp(Trajectory& poses) {
+  const auto seconds = [](const StampedPose& pose) { return pose.stamp.seconds; };
+  std::ranges::stable_sort(poses, {}, seconds);
+  Trajectory unique;
+  unique.reserve(poses.size());
+  for (StampedPose& pose : poses) {
+    if (!unique.empty() && seconds(unique.back()) == seconds(pose)) unique.pop_back();
+    unique.push_back(std::move(pose));
+  }
+  poses = std::move(unique);
+}
+
+// A stamp that came from no file has no text.
+std::string stamp_text(const Stamp& stamp) {
+  return stamp.text.empty() ? fmt::format("{:.6f}", stamp.seconds) : stamp.text;
+}
+
+}  // namespace
+
+Trajectory read_trajectory(const std::filesystem::path& path) {
+  const TextTable table = TextTable::read(path, "stamp tx ty tz qx qy qz qw");
+  Trajectory poses;
+  poses.reserve(table.rows().size());
+  for (const TextRow& row : table.rows()) poses.push_back(parse_pose(table, row));
+  if (poses.empty()) throw Error("{}: no poses in the file", path.string());
+  sort_by_stamp(poses);
+  return poses;
+}
+
+std::string format_trajectory(const Trajectory& trajectory) {
+  std::string text;
+  text.reserve(trajectory.size() * 100);
+  for (const StampedPose& pose : trajectory) {
+    const Eigen::Vector3d t = pose.T_world_camera.translation();
+    Eigen::Quaterniond q(pose.T_world_camera.linear());
+    q.normalize();
+    if (q.w() < 0) q.coeffs() *= -1.0;  // of the two quaternions of a rotation always the same one
+    fmt::format_to(std::back_inserter(text),
+                   "{} {:.7f} {:.7f} {:.7f} {:.7f} {:.7f} {:.7f} {:.7f}\n",
+                   stamp_text(pose.stamp),
+                   t.x(),
+                   t.y(),
+                   t.z(),
+                   q.x(),
+                   q.y(),
+                   q.z(),
+                   q.w());
+  }
+  return text;
+}
+
+}  // namespace stillmap
