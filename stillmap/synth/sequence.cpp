@@ -25,7 +25,7 @@ CameraModel synthetic_camera(int width_px, int height_px) {
   return camera;
 }
 
-SyntheticSequence::SyntheticSequence(const SequenceOptions& options)
+SyntheticSequence::SyntheticSequence(const SyntheticOptions& options)
     : options_(options),
       renderer_(std::make_shared<const Scene>(make_room(options.seed)), options.camera) {
   STILLMAP_CHECK(options.frames_per_second > 0);

@@ -3,6 +3,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <functional>
 
 #include "stillmap/core/camera.hpp"
 #include "stillmap/core/rgbd_frame.hpp"
@@ -17,7 +19,7 @@ namespace stillmap {
 /// across stays, the optical centre keeps its place. Stored depth: 5000 units a metre.
 [[nodiscard]] CameraModel synthetic_camera(int width_px, int height_px);
 
-struct SequenceOptions {
+struct SyntheticOptions {
   PathKind path = PathKind::kXyz;
   CameraModel camera = synthetic_camera(640, 480);
   std::size_t frames = 300;
@@ -30,11 +32,11 @@ struct SequenceOptions {
 /// asked for; asking for the same frame twice gives equal bytes. Safe to use from several threads.
 class SyntheticSequence {
  public:
-  explicit SyntheticSequence(const SequenceOptions& options);
+  explicit SyntheticSequence(const SyntheticOptions& options);
 
   [[nodiscard]] std::size_t size() const { return options_.frames; }
   [[nodiscard]] const CameraModel& camera() const { return options_.camera; }
-  [[nodiscard]] const SequenceOptions& options() const { return options_; }
+  [[nodiscard]] const SyntheticOptions& options() const { return options_; }
 
   /// Frame `id`, which is below size(). Its depth is taken at the same time as its colour.
   [[nodiscard]] FramePtr frame(FrameId id) const;
@@ -49,8 +51,16 @@ class SyntheticSequence {
   [[nodiscard]] Trajectory ground_truth() const;
 
  private:
-  SequenceOptions options_;
+  SyntheticOptions options_;
   Renderer renderer_;
 };
+
+/// Writes a sequence in the layout of the TUM RGB-D benchmark, with PNG images, associations.txt,
+/// camera.yaml and groundtruth.txt. `on_progress`, where given, is called with the number of frames
+/// done and of all. Throws Error for a folder that holds something already, and when anything
+/// cannot be written; the lists come last, so that a folder with rgb.txt is complete.
+void write_tum_sequence(const SyntheticSequence& sequence,
+                        const std::filesystem::path& folder,
+                        const std::function<void(std::size_t, std::size_t)>& on_progress = nullptr);
 
 }  // namespace stillmap

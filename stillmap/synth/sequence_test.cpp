@@ -7,8 +7,8 @@
 namespace stillmap {
 namespace {
 
-SequenceOptions small_options(PathKind path, std::uint32_t seed = 5) {
-  SequenceOptions options;
+SyntheticOptions small_options(PathKind path, std::uint32_t seed = 5) {
+  SyntheticOptions options;
   options.path = path;
   options.camera = synthetic_camera(320, 240);
   options.frames = 600;
@@ -78,7 +78,7 @@ TEST(SyntheticSequence, PointsLandOnTheDepthOfOtherFrames) {
 }
 
 TEST(SyntheticSequence, PointsLandOnTheDepthOfADistortedCamera) {
-  SequenceOptions options = small_options(PathKind::kXyz);
+  SyntheticOptions options = small_options(PathKind::kXyz);
   options.camera = builtin_camera("tum_fr1");
   const SyntheticSequence sequence(options);
   const Agreement found = reproject(sequence, FrameId(0), FrameId(45));
@@ -106,7 +106,7 @@ TEST(SyntheticSequence, ShowsEnoughCorners) {
 }
 
 TEST(SyntheticSequence, RepeatsItselfToTheByte) {
-  SequenceOptions options = small_options(PathKind::kXyz);
+  SyntheticOptions options = small_options(PathKind::kXyz);
   options.sensor = SensorOptions{};
   const SyntheticSequence first(options), second(options);
   options.seed = 6;
