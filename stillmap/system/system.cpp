@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stillmap/system/system.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "stillmap/cloud/local_cloud.hpp"
@@ -47,9 +48,10 @@ FrameResult System::process(const FramePtr& frame) {
   result.pose_ms = total.lap_ms();
 
   TrackedFrame& tracked = result.tracked;
-  const auto gap = static_cast<int>(frame_number_ - keyframe_number_);
+  since_keyframe_.most_inliers = std::max(since_keyframe_.most_inliers, tracked.inliers);
+  ++since_keyframe_.frames;
   if (tracked.status == TrackingStatus::kInitialized ||
-      wants_keyframe(config_.keyframe, tracked, gap, map_)) {
+      wants_keyframe(config_.keyframe, tracked, since_keyframe_)) {
     tracked.reference = insert_keyframe(frame, tracked);
     result.is_keyframe = true;
   }
@@ -104,7 +106,7 @@ KeyframeId System::insert_keyframe(const FramePtr& frame, const TrackedFrame& tr
   create_landmarks_from_depth(map_, id, camera_, measure_, config_.mapping.creation);
   (void)map_.take_changes();  // the owner knows them; only windows hand changes on
   tracker_.set_reference(id, map_);
-  keyframe_number_ = frame_number_;
+  since_keyframe_ = {};
 
   std::vector<KeyframeId> core = mapping_core(map_, id, config_.mapping);
   auto window = std::make_shared<Map>(map_.window(core));

@@ -70,9 +70,9 @@ class System {
   Map map_;
   Tracker tracker_;
 
-  std::int64_t frame_number_ = 0;     // of those processed
-  std::int64_t keyframe_number_ = 0;  // of the last key frame
-  bool lost_ = true;                  // until the first frame
+  std::int64_t frame_number_ = 0;  // of those processed
+  KeyframeAge since_keyframe_;
+  bool lost_ = true;  // until the first frame
   std::vector<FrameRecord> records_;
   std::map<KeyframeId, std::shared_ptr<const PointCloud>> clouds_;
 

@@ -2,8 +2,6 @@
 #pragma once
 
 #include "stillmap/core/fields.hpp"
-#include "stillmap/map/map.hpp"
-#include "stillmap/optim/measurement_model.hpp"
 #include "stillmap/tracking/tracked_frame.hpp"
 
 namespace stillmap {
@@ -22,9 +20,15 @@ struct KeyframePolicyConfig {
           self.min_gap_frames,
           FieldInfo{"frames from a key frame to the next, at least", "frames", 1, 1000});
     visit("max_gap_frames", self.max_gap_frames, FieldInfo{"at most", "frames", 1, 100000});
-    visit("min_tracked_ratio",
-          self.min_tracked_ratio,
-          FieldInfo{"a frame that finds less of its reference's landmarks becomes one", "", 0, 1});
+    visit(
+        "min_tracked_ratio",
+        self.min_tracked_ratio,
+        FieldInfo{
+            "a frame that finds fewer landmarks than this share of the most since the last becomes "
+            "one",
+            "",
+            0,
+            1});
     visit("min_near_tracked",
           self.min_near_tracked,
           FieldInfo{"so does one with fewer near landmarks", "", 0, 10000});
@@ -35,11 +39,16 @@ struct KeyframePolicyConfig {
   }
 };
 
+/// What has happened since the last key frame.
+struct KeyframeAge {
+  int frames = 0;        ///< processed since then
+  int most_inliers = 0;  ///< in any of them
+};
+
 /// Does this frame become a key frame? Decided from frame numbers and counts alone, never from how
 /// busy the machine is.
 [[nodiscard]] bool wants_keyframe(const KeyframePolicyConfig& config,
                                   const TrackedFrame& frame,
-                                  int frames_since_keyframe,
-                                  const Map& map);
+                                  const KeyframeAge& since_keyframe);
 
 }  // namespace stillmap

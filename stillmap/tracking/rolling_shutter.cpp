@@ -47,7 +47,7 @@ Features undo_rolling_shutter(Features features,
 ReadoutEstimator::ReadoutEstimator(const ShutterConfig& config, const CameraModel& camera)
     : config_(config),
       camera_(camera),
-      readout_s_(std::min(camera.readout_s, config.max_readout_s)),
+      estimate_s_(std::min(camera.readout_s, config.max_readout_s)),
       information_(1.0 / (kPriorSigma_s * kPriorSigma_s)) {}
 
 void ReadoutEstimator::update(const Eigen::Isometry3d& T_camera_world,
@@ -78,8 +78,10 @@ void ReadoutEstimator::update(const Eigen::Isometry3d& T_camera_world,
   information -= cross.dot(eliminated);
   gradient -= g.dot(eliminated);
   if (!(information > 0)) return;
+  // The residuals belong to the readout that was corrected with; the estimate may differ from it.
+  gradient += information * (estimate_s_ - readout_s());
   information_ = config_.memory * information_ + information;
-  readout_s_ = std::clamp(readout_s_ - gradient / information_, 0.0, config_.max_readout_s);
+  estimate_s_ = std::clamp(estimate_s_ - gradient / information_, 0.0, config_.max_readout_s);
 }
 
 }  // namespace stillmap

@@ -37,6 +37,7 @@ struct CameraVelocity {
 
 struct ShutterConfig {
   bool calibrate = true;
+  double min_readout_s = 0.01;
   double max_readout_s = 0.04;
   double memory = 0.98;
 
@@ -45,6 +46,9 @@ struct ShutterConfig {
     visit("calibrate",
           self.calibrate,
           FieldInfo{"estimate the camera's rolling shutter while tracking"});
+    visit("min_readout_s",
+          self.min_readout_s,
+          FieldInfo{"a shorter readout counts as a global shutter", "s", 0, 0.2});
     visit("max_readout_s",
           self.max_readout_s,
           FieldInfo{"longest readout of an image that is believed", "s", 0, 0.2});
@@ -61,9 +65,12 @@ class ReadoutEstimator {
  public:
   ReadoutEstimator(const ShutterConfig& config, const CameraModel& camera);
 
-  [[nodiscard]] double readout_s() const { return readout_s_; }
+  /// What to correct with: 0 while the estimate is too short for a real rolling shutter.
+  [[nodiscard]] double readout_s() const {
+    return estimate_s_ < config_.min_readout_s ? 0.0 : estimate_s_;
+  }
 
-  /// `observations` are the inliers of a frame's pose, corrected with the current estimate;
+  /// `observations` are the inliers of a frame's pose, corrected with readout_s();
   /// `rows` where their features were in the image, in image heights from its middle.
   void update(const Eigen::Isometry3d& T_camera_world,
               const CameraVelocity& velocity,
@@ -73,7 +80,7 @@ class ReadoutEstimator {
  private:
   ShutterConfig config_;
   CameraModel camera_;
-  double readout_s_;
+  double estimate_s_;
   double information_;
 };
 
