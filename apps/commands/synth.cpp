@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <charconv>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "apps/commands.hpp"
+#include "apps/progress_bar.hpp"
+#include "stillmap/core/error.hpp"
+#include "stillmap/synth/scene_names.hpp"
+#include "stillmap/synth/sequence.hpp"
+
+namespace stillmap {
+namespace {
+
+struct SynthArguments {
+  std::string out;
+  std::string scene;
+  std::size_t frames = 0;  // 0: as many as the scene takes
+  std::uint32_t seed = 0;
+  std::string size = "640x480";
+  bool clean = false;
+};
+
+// One side of --size. Smaller images show nothing, larger ones are no camera's.
+int parse_side(std::string_view text, const std::string& size) {
+  constexpr int kSmallest = 32, kLargest = 4096;
+  int side = 0;
+  const char* end = text.data() + text.size();
+  const std::from_chars_result parsed = std::from_chars(text.data(), end, side);
+  if (parsed.ec != std::errc() || parsed.ptr != end || side < kSmallest || side > kLargest) {
+    throw Error("--size {}: expected WIDTHxHEIGHT such as 640x480, each from {} to {}",
+                size,
+                kSmallest,
+                kLargest);
+  }
+  return side;
+}
+
+CameraModel camera_of_size(const std::string& size) {
+  const std::string_view text = size;
+  const std::size_t cross = text.find('x');
+  const std::string_view height =
+      cross == std::string_view::npos ? std::string_view() : text.substr(cross + 1);
+  return synthetic_camera(parse_side(text.substr(0, cross), size), parse_side(height, size));
+}
+
+void render(const SynthArguments& arguments) {
+  const NamedScene scene = named_scene(arguments.scene);
+  SyntheticOptions options;
+  options.path = scene.path;
+  options.frames = arguments.frames > 0 ? arguments.frames : scene.frames;
+  options.camera = camera_of_size(arguments.size);
+  options.seed = arguments.seed;
+  if (arguments.clean) options.sensor = SensorOptions::clean();
+
+  ProgressBar progress("frames");
+  write_tum_sequence(SyntheticSequence(options),
+                     arguments.out,
+                     [&](std::size_t done, std::size_t total) { progress.show(done, total); });
+  progress.finish();
+  print_output(fmt::format(
+      "sequence    {} frames of {} in {}\n", options.frames, arguments.size, arguments.out));
+}
+
+}  // namespace
+
+void add_synth_command(CLI::App& app, CommandResult&) {
+  CLI::App* command = app.add_subcommand("synth", "Render a sequence with exact truth");
+  const auto arguments = std::make_shared<SynthArguments>();
+  command->add_option("OUT", arguments->out, "new or empty folder for the sequence")->required();
+  command
+      ->add_option(
+          "--scene", arguments->scene, fmt::format("one of: {}", fmt::join(scene_names(), ", ")))
+      ->required();
+  command->add_option("--frames", arguments->frames, "number of frames, at 30 a second")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{100000}));
+  command->add_option("--seed", arguments->seed, "varies pictures and noise, not the layout")
+      ->capture_default_str();
+  command->add_option("--size", arguments->size, "WIDTHxHEIGHT in pixels")->capture_default_str();
+  command->add_flag("--clean", arguments->clean, "a perfect sensor: no noise, no missing depth");
+  command->footer(
+      "Examples:\n"
+      "  stillmap synth room --scene empty\n"
+      "  stillmap synth round --scene loop --size 320x240 --seed 7 --clean");
+  command->callback([arguments] { render(*arguments); });
+}
+
+}  // namespace stillmap
