@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stillmap/synth/sequence.hpp"
 
+#include <Eigen/LU>
 #include <gtest/gtest.h>
 #include <opencv2/features2d.hpp>
 
@@ -85,6 +86,55 @@ TEST(SyntheticSequence, PointsLandOnTheDepthOfADistortedCamera) {
   EXPECT_GT(found.agree, 30000);
   EXPECT_LT(found.occluded, found.agree / 8);
   EXPECT_EQ(found.see_through, 0);
+}
+
+double gray_at(const cv::Mat1b& gray, const Eigen::Vector2d& pixel) {
+  const int x = static_cast<int>(pixel.x()), y = static_cast<int>(pixel.y());
+  const double u = pixel.x() - x, v = pixel.y() - y;
+  return (1 - v) * ((1 - u) * gray(y, x) + u * gray(y, x + 1)) +
+         v * ((1 - u) * gray(y + 1, x) + u * gray(y + 1, x + 1));
+}
+
+// The shift in pixels that best explains how the brightness of frame `to` differs from that of the
+// points of frame `from` (one step of Lucas and Kanade over the whole image).
+Eigen::Vector2d picture_shift(const SyntheticSequence& sequence, FrameId from, FrameId to) {
+  const FramePtr a = sequence.frame(from), b = sequence.frame(to);
+  const Eigen::Isometry3d T_b_a = sequence.pose(to).inverse() * sequence.pose(from);
+  const CameraModel& camera = sequence.camera();
+  Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d right = Eigen::Vector2d::Zero();
+  for (int y = 0; y < camera.height_px; ++y) {
+    for (int x = 0; x < camera.width_px; ++x) {
+      const Eigen::Vector2d raw(x, y);
+      const Eigen::Vector3d p_b =
+          T_b_a * camera.unproject(camera.undistort(raw), a->depth.mat(y, x));
+      if (p_b.z() < 0.1) continue;
+      const Eigen::Vector2d q = camera.distort(camera.project(p_b));
+      const std::optional<double> z = depth_at(b->depth.mat, q);
+      if (!z || std::abs(*z - p_b.z()) > 0.005) continue;
+      const Eigen::Vector2d gradient(gray_at(b->gray.mat, q + Eigen::Vector2d(0.5, 0)) -
+                                         gray_at(b->gray.mat, q - Eigen::Vector2d(0.5, 0)),
+                                     gray_at(b->gray.mat, q + Eigen::Vector2d(0, 0.5)) -
+                                         gray_at(b->gray.mat, q - Eigen::Vector2d(0, 0.5)));
+      normal += gradient * gradient.transpose();
+      right += gradient * (gray_at(b->gray.mat, q) - a->gray.mat(y, x));
+    }
+  }
+  return normal.inverse() * right;
+}
+
+TEST(SyntheticSequence, PicturesAgreeWithDepthAndPoses) {
+  for (const PathKind path : {PathKind::kXyz, PathKind::kHalfsphere, PathKind::kLoop}) {
+    const SyntheticSequence sequence(small_options(path));
+    for (const std::uint32_t i : {0U, 90U, 200U}) {
+      const Eigen::Vector2d shift = picture_shift(sequence, FrameId(i), FrameId(i + 10));
+      EXPECT_LT(shift.norm(), 0.03) << static_cast<int>(path) << " at " << i;
+    }
+  }
+  SyntheticOptions options = small_options(PathKind::kXyz);
+  options.camera = builtin_camera("tum_fr1");
+  const SyntheticSequence distorted(options);
+  EXPECT_LT(picture_shift(distorted, FrameId(0), FrameId(10)).norm(), 0.03);
 }
 
 TEST(SyntheticSequence, ShowsEnoughCorners) {
