@@ -211,7 +211,7 @@ int Solver::minimize(int iterations) {
     problem_.points = std::move(points);
     cost = new_cost;
     damping = std::max(damping * 0.2, 1e-8);
-    if (converged) break;
+    if (converged) return iteration + 1;
     linearize();
   }
   return iteration;
