@@ -21,6 +21,29 @@ constexpr std::array<int, kPatchRadiusPx + 1> kHalfWidths = [] {
   return widths;
 }();
 
+// The pattern's points one after the other, in an order that the compiler can work on in parallel.
+struct PatternPoints {
+  std::array<float, 2 * kBriefPattern.size()> x{}, y{};
+};
+
+constexpr PatternPoints kPatternPoints = [] {
+  PatternPoints points;
+  for (std::size_t i = 0; i < kBriefPattern.size(); ++i) {
+    points.x[2 * i] = kBriefPattern[i].x0;
+    points.y[2 * i] = kBriefPattern[i].y0;
+    points.x[2 * i + 1] = kBriefPattern[i].x1;
+    points.y[2 * i + 1] = kBriefPattern[i].y1;
+  }
+  return points;
+}();
+
+// To the nearest whole number, halves to the even one, for |value| < 2^22: the sum has no bits left
+// for fractions. Unlike a call to round, it is done for several values at once.
+float rounded(float value) {
+  constexpr float kShift = 12582912.0F;  // 1.5 * 2^23
+  return (value + kShift) - kShift;
+}
+
 }  // namespace
 
 float patch_orientation_deg(const cv::Mat1b& image, cv::Point at) {
@@ -41,17 +64,22 @@ float patch_orientation_deg(const cv::Mat1b& image, cv::Point at) {
 Descriptor rotated_brief(const cv::Mat1b& blurred, cv::Point at, float angle_deg) {
   const float angle = angle_deg * std::numbers::pi_v<float> / 180.0F;
   const float c = std::cos(angle), s = std::sin(angle);
+  const float stride = static_cast<float>(blurred.step[0]);
+  std::array<std::int32_t, kPatternPoints.x.size()> offsets;
+  for (std::size_t i = 0; i < offsets.size(); ++i) {
+    const float x = kPatternPoints.x[i], y = kPatternPoints.y[i];
+    offsets[i] =
+        static_cast<std::int32_t>(rounded(s * x + c * y) * stride + rounded(c * x - s * y));
+  }
   const std::uint8_t* center = blurred.ptr(at.y) + at.x;
-  const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(blurred.step[0]);
-  const auto value = [&](int x, int y) {
-    const float fx = static_cast<float>(x), fy = static_cast<float>(y);
-    return center[cvRound(s * fx + c * fy) * stride + cvRound(c * fx - s * fy)];
-  };
   Descriptor descriptor{};
-  for (std::size_t i = 0; i < kBriefPattern.size(); ++i) {
-    const BriefTest& test = kBriefPattern[i];
-    const bool darker = value(test.x0, test.y0) < value(test.x1, test.y1);
-    descriptor[i / 64] |= static_cast<std::uint64_t>(darker) << (i % 64);
+  const std::int32_t* pair = offsets.data();
+  for (std::uint64_t& word : descriptor) {
+    std::uint64_t bits = 0;
+    for (unsigned bit = 0; bit < 64; ++bit, pair += 2) {
+      bits |= static_cast<std::uint64_t>(center[pair[0]] < center[pair[1]]) << bit;
+    }
+    word = bits;
   }
   return descriptor;
 }

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stillmap/features/feature_grid.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
 namespace stillmap {
 
 FeatureGrid::FeatureGrid(std::span<const Eigen::Vector2f> points_px, int width_px, int height_px)
-    : columns_(static_cast<int>(std::ceil(static_cast<float>(width_px) / kCellPx))),
-      rows_(static_cast<int>(std::ceil(static_cast<float>(height_px) / kCellPx))),
+    : columns_(std::max(1, static_cast<int>(std::ceil(static_cast<float>(width_px) / kCellPx)))),
+      rows_(std::max(1, static_cast<int>(std::ceil(static_cast<float>(height_px) / kCellPx)))),
       cell_begin_(static_cast<std::size_t>(columns_ * rows_) + 1, 0),
       indices_(points_px.size()) {
   // Counting sort: sizes, then begins, then the points by index.

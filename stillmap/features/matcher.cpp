@@ -61,13 +61,30 @@ BestTwo best_feature(const Projection& projection,
   return best;
 }
 
+struct AllPairs {
+  std::vector<BestTwo> best_of_a;         // per chosen feature of a
+  std::vector<std::uint32_t> nearest_to;  // per feature of b: place of the nearest chosen one
+};
+
 STILLMAP_POPCOUNT_CLONES
-BestTwo best_by_appearance(const Descriptor& descriptor, const Features& features) {
-  BestTwo best;
-  for (std::uint32_t i = 0; i < features.size(); ++i) {
-    best.offer(i, hamming_distance(descriptor, features.descriptors[i]), 0);
+AllPairs compare_all(const Features& a,
+                     std::span<const std::uint32_t> a_indices,
+                     const Features& b) {
+  AllPairs pairs{std::vector<BestTwo>(a_indices.size()),
+                 std::vector<std::uint32_t>(b.size(), kNone)};
+  std::vector<int> least(b.size(), kNoDistance);
+  for (std::uint32_t place = 0; place < a_indices.size(); ++place) {
+    const Descriptor& descriptor = a.descriptors[a_indices[place]];
+    BestTwo& best = pairs.best_of_a[place];
+    for (std::uint32_t i = 0; i < b.size(); ++i) {
+      const int distance = hamming_distance(descriptor, b.descriptors[i]);
+      best.offer(i, distance, 0);
+      if (distance >= least[i]) continue;
+      least[i] = distance;
+      pairs.nearest_to[i] = place;
+    }
   }
-  return best;
+  return pairs;
 }
 
 // Of the matches of one feature keeps the one of least distance; result sorted by query.
@@ -104,12 +121,14 @@ std::vector<FeatureMatch> match_all(const Features& a,
                                     std::span<const std::uint32_t> a_indices,
                                     const Features& b,
                                     const MatchRules& rules) {
+  const AllPairs pairs = compare_all(a, a_indices, b);
   std::vector<FeatureMatch> matches;
-  for (const std::uint32_t i : a_indices) {
-    const BestTwo best = best_by_appearance(a.descriptors[i], b);
-    if (best.accepted(rules)) matches.push_back({i, best.index, best.best});
+  for (std::uint32_t place = 0; place < a_indices.size(); ++place) {
+    const BestTwo& best = pairs.best_of_a[place];
+    if (!best.accepted(rules) || pairs.nearest_to[best.index] != place) continue;
+    matches.push_back({a_indices[place], best.index, best.best});
   }
-  return one_to_one(std::move(matches), b.size());
+  return matches;
 }
 
 std::vector<FeatureMatch> keep_consistent_rotations(std::span<const FeatureMatch> matches,

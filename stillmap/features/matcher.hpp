@@ -28,7 +28,7 @@ struct FeatureMatch {
 
 struct MatchRules {
   int max_distance = 100;  ///< Hamming, of 256
-  double max_ratio = 1.0;  ///< best to second best distance on the same level; 1 = not asked
+  double max_ratio = 1.0;  ///< best to second best distance, asked where both are on one level
 };
 
 /// The best feature for each projection, one to one: of several projections that want one feature
@@ -40,7 +40,7 @@ struct MatchRules {
                                                           const MatchRules& rules);
 
 /// Mutual best matches by appearance alone between the features of `a` chosen by `a_indices` and
-/// all of `b`. Sorted by query, which is an index into `a`.
+/// all of `b` (ties: the earlier). In the order of `a_indices`; the query is an index into `a`.
 [[nodiscard]] std::vector<FeatureMatch> match_all(const Features& a,
                                                   std::span<const std::uint32_t> a_indices,
                                                   const Features& b,

@@ -31,6 +31,19 @@ Node bounding_node(const std::vector<cv::KeyPoint>& corners) {
   return node;
 }
 
+bool on_one_spot(const Node& node, const std::vector<cv::KeyPoint>& corners) {
+  for (std::size_t i = node.begin + 1; i < node.end; ++i) {
+    if (corners[i].pt != corners[node.begin].pt) return false;
+  }
+  return true;
+}
+
+// Above a where b is, so that a cut there always tells the two apart.
+float middle_of(float a, float b) {
+  const float middle = 0.5F * (a + b);
+  return middle > a ? middle : b;
+}
+
 }  // namespace
 
 std::vector<cv::KeyPoint> spread_evenly(std::vector<cv::KeyPoint> corners, int count) {
@@ -38,6 +51,7 @@ std::vector<cv::KeyPoint> spread_evenly(std::vector<cv::KeyPoint> corners, int c
   if (count <= 0) return {};
 
   std::priority_queue<Node> nodes;  // the fullest on top
+  std::vector<Node> spots;          // with several corners on one spot, not to be split
   nodes.push(bounding_node(corners));
   std::size_t made = 1;
   const auto split = [&corners](std::size_t begin, std::size_t end, auto&& goes_first) {
@@ -46,11 +60,15 @@ std::vector<cv::KeyPoint> spread_evenly(std::vector<cv::KeyPoint> corners, int c
     return static_cast<std::size_t>(std::stable_partition(first, last, goes_first) -
                                     corners.begin());
   };
-  while (nodes.size() < static_cast<std::size_t>(count) && nodes.top().size() > 1) {
+  while (nodes.size() + spots.size() < static_cast<std::size_t>(count) && !nodes.empty() &&
+         nodes.top().size() > 1) {
     const Node node = nodes.top();
     nodes.pop();
-    const float xm = 0.5F * (node.x0 + node.x1), ym = 0.5F * (node.y0 + node.y1);
-    if (xm <= node.x0 && ym <= node.y0) break;  // corners on one spot cannot be told apart
+    if (on_one_spot(node, corners)) {
+      spots.push_back(node);
+      continue;
+    }
+    const float xm = middle_of(node.x0, node.x1), ym = middle_of(node.y0, node.y1);
     const auto is_left = [xm](const cv::KeyPoint& c) { return c.pt.x < xm; };
     const auto is_upper = [ym](const cv::KeyPoint& c) { return c.pt.y < ym; };
     const std::size_t middle = split(node.begin, node.end, is_upper);
@@ -66,13 +84,15 @@ std::vector<cv::KeyPoint> spread_evenly(std::vector<cv::KeyPoint> corners, int c
   }
 
   std::vector<cv::KeyPoint> kept;
-  kept.reserve(nodes.size());
-  for (; !nodes.empty(); nodes.pop()) {
-    const auto first = corners.begin() + static_cast<std::ptrdiff_t>(nodes.top().begin);
-    const auto last = corners.begin() + static_cast<std::ptrdiff_t>(nodes.top().end);
+  kept.reserve(nodes.size() + spots.size());
+  const auto keep_strongest = [&](const Node& node) {
+    const auto first = corners.begin() + static_cast<std::ptrdiff_t>(node.begin);
+    const auto last = corners.begin() + static_cast<std::ptrdiff_t>(node.end);
     kept.push_back(*std::max_element(
         first, last, [](const auto& a, const auto& b) { return a.response < b.response; }));
-  }
+  };
+  for (; !nodes.empty(); nodes.pop()) keep_strongest(nodes.top());
+  for (const Node& spot : spots) keep_strongest(spot);
   return kept;
 }
 

@@ -39,6 +39,7 @@ class Solver {
   [[nodiscard]] double cost() const { return cost_of(problem_.T_camera_world, problem_.points); }
   [[nodiscard]] std::vector<std::uint8_t> inliers() const;
   void use(std::vector<std::uint8_t> used) { used_ = std::move(used); }
+  [[nodiscard]] const BundleProblem& problem() const { return problem_; }
   [[nodiscard]] BundleProblem take_problem() { return std::move(problem_); }
 
  private:
@@ -210,19 +211,21 @@ int Solver::minimize(int iterations) {
     problem_.points = std::move(points);
     cost = new_cost;
     damping = std::max(damping * 0.2, 1e-8);
-    if (converged) break;
+    if (converged) return iteration + 1;
     linearize();
   }
   return iteration;
 }
 
-// The residual is undefined behind a camera, so such observations never take part.
-std::vector<std::uint8_t> in_front(const BundleProblem& problem) {
+// Observations of points behind their camera, where the residual is undefined, and of what is no
+// number never take part: one of them would make every cost infinite.
+std::vector<std::uint8_t> usable(const BundleProblem& problem) {
   std::vector<std::uint8_t> used(problem.observations.size());
   for (std::size_t i = 0; i < used.size(); ++i) {
     const BundleObservation& o = problem.observations[i];
     const Eigen::Vector3d p_camera = problem.T_camera_world[o.camera] * problem.points[o.point];
-    used[i] = p_camera.z() >= kMinPointDepth ? 1 : 0;
+    const bool finite = reprojection_residual(problem.camera, o.measurement, p_camera).allFinite();
+    used[i] = p_camera.z() >= kMinPointDepth && finite ? 1 : 0;
   }
   return used;
 }
@@ -231,15 +234,15 @@ std::vector<std::uint8_t> in_front(const BundleProblem& problem) {
 
 BundleResult adjust_bundle(BundleProblem problem, const BundleConfig& config) {
   STILLMAP_CHECK(problem.held.size() == problem.T_camera_world.size());
-  const std::vector<std::uint8_t> used = in_front(problem);
-  Solver solver(std::move(problem), used);
+  std::vector<std::uint8_t> used = usable(problem);
+  Solver solver(std::move(problem), std::move(used));
   BundleResult result;
   result.initial_cost = solver.cost();
   result.iterations = solver.minimize(config.robust_iterations);
   solver.use(solver.inliers());
   result.iterations += solver.minimize(config.final_iterations);
   result.inlier = solver.inliers();
-  solver.use(used);
+  solver.use(usable(solver.problem()));  // an outlier may have ended behind its camera
   result.final_cost = solver.cost();
   BundleProblem solved = solver.take_problem();
   result.T_camera_world = std::move(solved.T_camera_world);

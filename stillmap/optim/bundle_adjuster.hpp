@@ -44,7 +44,7 @@ struct BundleResult {
   std::vector<Eigen::Isometry3d> T_camera_world;
   std::vector<Eigen::Vector3d> points;
   std::vector<std::uint8_t> inlier;  ///< per observation: within the 95 % bound at the end
-  double initial_cost = 0;           ///< Huber's loss of all observations
+  double initial_cost = 0;           ///< Huber's loss of all points before their cameras
   double final_cost = 0;             ///< the same at the end
   int iterations = 0;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stillmap/optim/pose_optimizer.hpp"
 
+#include <cmath>
 #include <limits>
 
 #include <Eigen/Cholesky>
@@ -84,7 +85,7 @@ Eigen::Isometry3d minimize(const CameraModel& camera,
     if (!step.allFinite()) break;
     const Eigen::Isometry3d candidate = perturb_left(T, step);
     const double cost = total_cost(camera, candidate, observations, inlier, robust);
-    if (cost > eq.cost) {
+    if (!(cost <= eq.cost)) {  // also when not a number
       damping *= 100;
       continue;
     }
@@ -100,9 +101,17 @@ Eigen::Isometry3d minimize(const CameraModel& camera,
 PoseEstimate optimize_pose(const CameraModel& camera,
                            const Eigen::Isometry3d& T_camera_world,
                            Observations observations) {
-  PoseEstimate estimate{T_camera_world,
-                        std::vector<std::uint8_t>(observations.size(), 1),
-                        static_cast<int>(observations.size())};
+  PoseEstimate estimate{T_camera_world, std::vector<std::uint8_t>(observations.size(), 0), 0};
+  // A point behind the camera would make every step's cost infinite, and one that is no number
+  // would make the step none: they stay out until a later round finds them within the bound.
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    const bool usable = std::isfinite(squared_error(camera, T_camera_world, observations[i]));
+    estimate.inlier[i] = usable ? 1 : 0;
+    estimate.inliers += estimate.inlier[i];
+  }
+  if (estimate.inliers < kMinObservations) {
+    return {T_camera_world, std::vector<std::uint8_t>(observations.size(), 0), 0};
+  }
   for (int round = 0; round < kRounds && estimate.inliers >= kMinObservations; ++round) {
     estimate.T_camera_world = minimize(
         camera, estimate.T_camera_world, observations, estimate.inlier, round < kRobustRounds);
@@ -112,10 +121,6 @@ PoseEstimate optimize_pose(const CameraModel& camera,
       estimate.inlier[i] = chi2 <= chi2_bound(observations[i].measurement) ? 1 : 0;
       estimate.inliers += estimate.inlier[i];
     }
-  }
-  if (observations.size() < kMinObservations) {
-    estimate.inlier.assign(observations.size(), 0);
-    estimate.inliers = 0;
   }
   return estimate;
 }

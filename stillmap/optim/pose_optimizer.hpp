@@ -24,7 +24,7 @@ struct PoseEstimate {
 /// (pixels and inverse depth) by Levenberg-Marquardt, in four rounds; after each the observations
 /// beyond the 95 % bound are set aside and the others readmitted, and the last rounds are plain
 /// least squares over the inliers. Observations behind the camera are outliers. With fewer than
-/// three observations the pose is returned as given, with no inliers.
+/// three observations before the camera the pose is returned as given, with no inliers.
 [[nodiscard]] PoseEstimate optimize_pose(const CameraModel& camera,
                                          const Eigen::Isometry3d& T_camera_world,
                                          std::span<const PoseObservation> observations);
