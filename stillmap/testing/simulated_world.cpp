@@ -26,9 +26,16 @@ Eigen::Vector3d point_on_box(const Eigen::Vector3d& half_size, std::mt19937& rng
 
 // The level at which the corner fills one pixel of the level; nothing outside the pyramid.
 std::optional<std::uint8_t> level_at(const WorldPoint& point, double distance_m) {
-  const double level = std::round(std::log(point.base_distance_m / distance_m) / std::log(1.2));
+  const double level =
+      std::round(std::log(point.base_distance_m / distance_m) / std::log(kScaleFactor));
   if (level < 0 || level >= kLevels) return std::nullopt;
   return static_cast<std::uint8_t>(level);
+}
+
+bool near_image(const CameraModel& camera, const Eigen::Vector2d& px) {
+  constexpr double kMargin_px = 50;
+  return px.x() > -kMargin_px && px.x() < camera.width_px + kMargin_px && px.y() > -kMargin_px &&
+         px.y() < camera.height_px + kMargin_px;
 }
 
 void flip_bits(Descriptor& descriptor, int count, std::mt19937& rng) {
@@ -86,10 +93,13 @@ Observed SimulatedWorld::observe_rolling(const CameraPath& path,
     Eigen::Vector3d p_camera = T_camera_world * points_[i].position;
     // The row decides the instant, which decides the row: a contraction, for rows pass much faster
     // than points move.
+    double last_row = 0;
     for (int round = 0; round < 20 && readout_s > 0 && p_camera.z() > kNearest_m; ++round) {
-      const double row = camera_.distort(camera_.project(p_camera)).y() / camera_.height_px - 0.5;
-      if (std::abs(row) > 1.0) break;
+      const Eigen::Vector2d px = camera_.distort(camera_.project(p_camera));
+      const double row = px.y() / camera_.height_px - 0.5;
+      if (!near_image(camera_, px) || std::abs(row - last_row) < 1e-9) break;
       p_camera = path(time_s + readout_s * row).inverse() * points_[i].position;
+      last_row = row;
     }
     if (p_camera.z() > kNearest_m) append(p_camera, i, noise, rng, observed);
   }
