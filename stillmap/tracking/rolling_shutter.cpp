@@ -62,6 +62,9 @@ void ReadoutEstimator::update(const Eigen::Isometry3d& T_camera_world,
   double information = 0, gradient = 0;
   for (std::size_t i = 0; i < observations.size(); ++i) {
     const PointMeasurement& m = observations[i].measurement;
+    // Without depth a feature is only turned back, so what is left of its error is no error of the
+    // readout alone.
+    if (!m.has_depth()) continue;
     const Eigen::Vector3d p = T_camera_world * observations[i].p_world;
     const Eigen::Vector3d r = reprojection_residual(camera_, m, p);
     const Eigen::Matrix3d J_point = reprojection_jacobian(camera_, m, p);
