@@ -81,7 +81,9 @@ void ReadoutEstimator::update(const Eigen::Isometry3d& T_camera_world,
   information -= cross.dot(eliminated);
   gradient -= g.dot(eliminated);
   if (!(information > 0)) return;
-  information_ = config_.memory * information_ + information;
+  // What was learnt in motion is not forgotten while the camera stands: the little "motion" that
+  // noise makes there tells nothing and would pull the estimate to zero.
+  information_ = std::max(information_, config_.memory * information_ + information);
   readout_s_ = std::clamp(readout_s_ - gradient / information_, 0.0, config_.max_readout_s);
 }
 
