@@ -17,6 +17,8 @@ struct CommandResult {
 // `result` outlives the callback.
 //
 // A new command: apps/commands/NAME.cpp, its line here, in main.cpp's table and in CMakeLists.txt.
+void add_run_command(CLI::App& app, CommandResult& result);
+void add_evaluate_command(CLI::App& app, CommandResult& result);
 void add_config_command(CLI::App& app, CommandResult& result);
 
 /// Writes to standard output. Throws Error when that fails (a full disk, a closed pipe).

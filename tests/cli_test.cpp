@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The program as its user meets it: what it prints, where, and how it exits.
-#include <array>
-#include <cstdio>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
-#include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
+
+#include "tests/cli_fixture.hpp"
 
 namespace stillmap {
 namespace {
@@ -21,49 +15,6 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::MatchesRegex;
 using testing::StartsWith;
-
-struct Outcome {
-  int exit_code = -1;
-  std::string out;
-  std::string err;
-};
-
-class Cli : public testing::Test {
- protected:
-  Cli() {
-    const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::temp_directory_path() /
-              ("stillmap_cli_" + std::string(test->name()) + std::to_string(getpid()));
-    std::filesystem::create_directories(folder_);
-  }
-  ~Cli() override { std::filesystem::remove_all(folder_); }
-
-  // Runs "stillmap ARGUMENTS" in a shell, in the test's own folder.
-  [[nodiscard]] Outcome run(const std::string& arguments) const {
-    const std::string command =
-        "cd '" + folder_.string() + "' && '" STILLMAP_BINARY_DIR "/bin/stillmap' " + arguments;
-    const int status =
-        std::system(("{ " + command + "; } > " + path("out") + " 2> " + path("err")).c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content("out"), content("err")};
-  }
-
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-  }
-
- private:
-  [[nodiscard]] std::string path(const std::string& name) const {
-    return "'" + (folder_ / name).string() + "'";
-  }
-
-  [[nodiscard]] std::string content(const std::string& name) const {
-    std::ostringstream text;
-    text << std::ifstream(folder_ / name).rdbuf();
-    return text.str();
-  }
-
-  std::filesystem::path folder_;
-};
 
 TEST_F(Cli, HelpShowsCommandsAndExamples) {
   const Outcome outcome = run("--help");

@@ -21,7 +21,8 @@ def without_comments(text):
 
 def read_module(folder):
     """The arguments of the folder's stillmap_module call, by keyword."""
-    text = without_comments((folder / "CMakeLists.txt").read_text())
+    file = folder / "CMakeLists.txt"
+    text = without_comments(file.read_text()) if file.is_file() else ""
     call = re.search(r"\bstillmap_module\s*\(([^)]*)\)", text)
     arguments = {keyword: [] for keyword in KEYWORDS}
     keyword = None

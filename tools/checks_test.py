@@ -139,6 +139,12 @@ class Layers(unittest.TestCase):
                                       "stillmap_module(NAME low HEADERS l.hpp SOURCES l.cpp USES mid)"),
                          ["stillmap/low/CMakeLists.txt: USES mid, which does not stand above low"])
 
+    def test_missing_module(self):
+        tree = self.tree()
+        tree["stillmap/CMakeLists.txt"] += "add_subdirectory(gone)\n"
+        self.assertEqual(self.problems(tree),
+                         ["stillmap/gone/CMakeLists.txt: expected stillmap_module(NAME gone ...)"])
+
     def test_forgotten_file(self):
         self.assertEqual(self.changed("stillmap/mid/m.cpp", ""),
                          ["stillmap/mid/m.cpp: listed in neither SOURCES nor TESTS"])

@@ -224,7 +224,8 @@ TEST_F(LoadYaml, RefusesWhatIsNotText) {
             "c.yaml:2: byte 0x00 is not UTF-8 text, expected a YAML file");
   EXPECT_EQ(error("note: caf\xe9\n"),
             "c.yaml:1: byte 0xe9 is not UTF-8 text, expected a YAML file");
-  EXPECT_EQ(error("\xff\xfes\0e\0"), "c.yaml:1: byte 0xff is not UTF-8 text, expected a YAML file");
+  EXPECT_EQ(error(std::string("\xff\xfes\0e\0", 6)),
+            "c.yaml:1: byte 0xff is not UTF-8 text, expected a YAML file");
   EXPECT_EQ(error("\x89PNG\r\n\x1a\n"),
             "c.yaml:1: byte 0x89 is not UTF-8 text, expected a YAML file");
   EXPECT_THAT(error("note: \xe2\x82"), EndsWith("expected a YAML file")) << "cut UTF-8";
@@ -237,7 +238,7 @@ TEST_F(LoadYaml, DamagedFilesAreErrorsOrGoodValues) {
   const std::string_view alphabet = "[]{}:,-?&*!|>'\"%@`#\n\t ~0x.\\a\xc3\xa9\xef";
   std::mt19937 random(3);
   int refused = 0;
-  for (int round = 0; round < 5000; ++round) {
+  for (int round = 0; round < 2000; ++round) {
     std::string damaged = text;
     for (unsigned edit = 0; edit <= random() % 4; ++edit) {
       const std::size_t at = random() % damaged.size();
@@ -263,7 +264,7 @@ TEST_F(LoadYaml, DamagedFilesAreErrorsOrGoodValues) {
       ++refused;
     }
   }
-  EXPECT_GT(refused, 1000);
+  EXPECT_GT(refused, 500);
 }
 
 }  // namespace

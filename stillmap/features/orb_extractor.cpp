@@ -104,10 +104,15 @@ std::vector<cv::KeyPoint> OrbExtractor::detect(const cv::Mat1b& image) const {
 void OrbExtractor::append(std::size_t level,
                           const std::vector<cv::KeyPoint>& corners,
                           Features& features) const {
+  // Resizing keeps the image's border, not its first pixel's centre, in place; and sizes are whole.
+  const cv::Mat1b& image = levels_[level].image;
+  const cv::Point2f to_full(static_cast<float>(camera_.width_px) / static_cast<float>(image.cols),
+                            static_cast<float>(camera_.height_px) / static_cast<float>(image.rows));
   for (const cv::KeyPoint& corner : corners) {
     const cv::Point at(static_cast<int>(corner.pt.x), static_cast<int>(corner.pt.y));
-    const float angle_deg = patch_orientation_deg(levels_[level].image, at);
-    features.raw_px.emplace_back(corner.pt.x * scales_[level], corner.pt.y * scales_[level]);
+    const float angle_deg = patch_orientation_deg(image, at);
+    features.raw_px.emplace_back((corner.pt.x + 0.5F) * to_full.x - 0.5F,
+                                 (corner.pt.y + 0.5F) * to_full.y - 0.5F);
     features.level.push_back(static_cast<std::uint8_t>(level));
     features.angle_deg.push_back(angle_deg);
     features.descriptors.push_back(rotated_brief(levels_[level].blurred, at, angle_deg));

@@ -32,7 +32,7 @@ struct NumberKey {
   bool required;
 };
 
-constexpr std::array<NumberKey, 10> kNumbers = {
+constexpr std::array<NumberKey, 11> kNumbers = {
     {{"fx", &CameraModel::fx, true},
      {"fy", &CameraModel::fy, true},
      {"cx", &CameraModel::cx, true},
@@ -42,7 +42,8 @@ constexpr std::array<NumberKey, 10> kNumbers = {
      {"p1", &CameraModel::p1, false},
      {"p2", &CameraModel::p2, false},
      {"k3", &CameraModel::k3, false},
-     {"depth_factor", &CameraModel::depth_factor, false}}};
+     {"depth_factor", &CameraModel::depth_factor, false},
+     {"readout_s", &CameraModel::readout_s, false}}};
 
 struct SizeKey {
   std::string_view key;
@@ -187,6 +188,9 @@ void check_camera(const CameraModel& camera, const std::string& place) {
     const bool positive = entry.key == "fx" || entry.key == "fy" || entry.key == "depth_factor";
     if (positive && value <= 0.0) {
       throw Error("{}: {} is {}, expected a positive number", place, entry.key, value);
+    }
+    if (entry.key == "readout_s" && (value < 0.0 || value > 1.0)) {
+      throw Error("{}: {} is {}, expected 0 to 1 seconds", place, entry.key, value);
     }
   }
 }

@@ -17,8 +17,9 @@ namespace {
 constexpr std::size_t kMaxFileBytes = std::size_t{256} << 20U;
 
 std::string read_image_file(const std::filesystem::path& path) {
+  if (!path_exists(path)) throw DamagedImage("{}: no such file, expected an image", path.string());
   std::string bytes = read_file(path, kMaxFileBytes);
-  if (bytes.empty()) throw Error("{}: empty file, expected an image", path.string());
+  if (bytes.empty()) throw DamagedImage("{}: empty file, expected an image", path.string());
   return bytes;
 }
 
@@ -30,13 +31,13 @@ ColorImage read_color(const std::filesystem::path& path) {
   if (is_png(bytes)) {
     return ColorImage(cv::Mat3b(decode_png(bytes, PngKind::kRgb8, path.string())));
   }
-  throw Error("{}: neither PNG nor JPEG, expected a colour image", path.string());
+  throw DamagedImage("{}: neither PNG nor JPEG, expected a colour image", path.string());
 }
 
 DepthImage read_depth(const std::filesystem::path& path, double depth_factor) {
   STILLMAP_CHECK(depth_factor > 0.0);
   const std::string bytes = read_image_file(path);
-  if (!is_png(bytes)) throw Error("{}: not a PNG, expected a 16-bit depth PNG", path.string());
+  if (!is_png(bytes)) throw DamagedImage("{}: not a PNG, expected a 16-bit depth PNG", path.string());
   const cv::Mat1w raw(decode_png(bytes, PngKind::kGray16, path.string()));
   cv::Mat1f metres(raw.size());
   const float factor = static_cast<float>(depth_factor);

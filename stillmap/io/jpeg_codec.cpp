@@ -7,6 +7,7 @@
 #include <turbojpeg.h>
 
 #include "stillmap/core/error.hpp"
+#include "stillmap/io/image_io.hpp"
 #include "stillmap/io/png_codec.hpp"
 
 namespace stillmap {
@@ -43,7 +44,7 @@ cv::Mat3b decode_jpeg(std::string_view bytes, const std::string& name) {
                           &height,
                           &subsampling,
                           &colorspace) != 0) {
-    throw Error("{}: broken JPEG: {}", name, tjGetErrorStr2(handle.get()));
+    throw DamagedImage("{}: broken JPEG: {}", name, tjGetErrorStr2(handle.get()));
   }
   if (std::max(width, height) > kMaxImageSidePx) {
     throw Error("{}: {}x{} pixels, expected at most {}x{}",
@@ -68,7 +69,7 @@ cv::Mat3b decode_jpeg(std::string_view bytes, const std::string& name) {
                     height,
                     TJPF_RGB,
                     TJFLAG_LIMITSCANS | TJFLAG_STOPONWARNING) != 0) {
-    throw Error("{}: broken JPEG: {}", name, tjGetErrorStr2(handle.get()));
+    throw DamagedImage("{}: broken JPEG: {}", name, tjGetErrorStr2(handle.get()));
   }
   return rgb;
 }

@@ -11,6 +11,7 @@
 #include <png.h>
 
 #include "stillmap/core/error.hpp"
+#include "stillmap/io/image_io.hpp"
 
 namespace stillmap {
 namespace {
@@ -191,7 +192,7 @@ bool is_png(std::string_view bytes) {
 cv::Mat decode_png(std::string_view bytes, PngKind kind, const std::string& name) {
   if (!is_png(bytes)) throw Error("{}: not a PNG file", name);
   PngReader reader(bytes);
-  if (!reader.read_header()) throw Error("{}: broken PNG: {}", name, reader.error());
+  if (!reader.read_header()) throw DamagedImage("{}: broken PNG: {}", name, reader.error());
   if (std::max(reader.width(), reader.height()) > static_cast<std::uint32_t>(kMaxImageSidePx)) {
     throw Error("{}: {}x{} pixels, expected at most {}x{}",
                 name,
@@ -206,7 +207,7 @@ cv::Mat decode_png(std::string_view bytes, PngKind kind, const std::string& name
   STILLMAP_CHECK(image.isContinuous());
   std::vector<png_bytep> rows = row_pointers(image);
   if (!reader.start(kind, image.step[0]) || !reader.read_rows(rows.data())) {
-    throw Error("{}: broken PNG: {}", name, reader.error());
+    throw DamagedImage("{}: broken PNG: {}", name, reader.error());
   }
   return image;
 }

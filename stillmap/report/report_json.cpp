@@ -30,7 +30,8 @@ Json camera_json(const CameraModel& camera) {
           {"cx", camera.cx},
           {"cy", camera.cy},
           {"distortion", {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3}},
-          {"depth_factor", camera.depth_factor}};
+          {"depth_factor", camera.depth_factor},
+          {"readout_s", camera.readout_s}};
 }
 
 Json all_frames_json(const RunReport& report) {

@@ -37,7 +37,7 @@ class System {
   /// Tracks a frame; it may become a key frame. Frames have the camera's size.
   FrameResult process(const FramePtr& frame);
 
-  /// Ends the run: waits for pending work, adjusts the whole map, assembles the cloud. Call once.
+  /// Ends the run: waits for pending work and assembles the cloud. Call once.
   [[nodiscard]] RunResult finish();
 
   [[nodiscard]] const Map& map() const { return map_; }

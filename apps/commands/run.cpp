@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "apps/commands.hpp"
+#include "apps/progress_bar.hpp"
+#include "stillmap/config/config_io.hpp"
+#include "stillmap/core/error.hpp"
+#include "stillmap/core/nearest_name.hpp"
+#include "stillmap/eval/ate.hpp"
+#include "stillmap/eval/rpe.hpp"
+#include "stillmap/io/atomic_file.hpp"
+#include "stillmap/io/camera_io.hpp"
+#include "stillmap/io/trajectory_io.hpp"
+#include "stillmap/run/run_folder.hpp"
+#include "stillmap/run/run_sequence.hpp"
+#include "version.hpp"
+
+namespace stillmap {
+namespace {
+
+constexpr int kLostForGood = 3;
+
+struct RunArguments {
+  std::string sequence;
+  std::string out;
+  std::string config_file;
+  std::vector<std::string> settings;
+  std::string camera;
+  std::string segmenter = "none";
+  std::string dynamics = "off";
+  std::string frames;
+  std::size_t stride = 1;
+  int threads = 2;
+  std::string groundtruth;
+};
+
+// What other versions can do is refused by name, not ignored.
+void check_modes(const RunArguments& arguments) {
+  const std::vector<std::string> modes = {"off", "mask", "paper", "full"};
+  if (std::ranges::find(modes, arguments.dynamics) == modes.end()) {
+    throw Error("--dynamics {}: {}", arguments.dynamics, name_hint(arguments.dynamics, modes));
+  }
+  if (arguments.dynamics != "off") {
+    throw Error("--dynamics {} is not in this version: use --dynamics off, for a static world",
+                arguments.dynamics);
+  }
+  if (arguments.segmenter != "none") {
+    throw Error("--segmenter {} is not in this version: use --segmenter none", arguments.segmenter);
+  }
+}
+
+SystemConfig make_config(const RunArguments& arguments) {
+  SystemConfig config;
+  const std::vector<FieldRef> fields = list_fields(config);
+  if (!arguments.config_file.empty()) load_yaml(fields, arguments.config_file);
+  for (const std::string& setting : arguments.settings) set_value(fields, setting);
+  config.check();
+  return config;
+}
+
+std::optional<CameraModel> chosen_camera(const std::string& name) {
+  if (name.empty()) return std::nullopt;
+  const bool is_file = name.find('/') != std::string::npos || name.ends_with(".yaml");
+  return is_file ? read_camera_yaml(name) : builtin_camera(name);
+}
+
+std::optional<Trajectory> read_groundtruth(const RunArguments& arguments,
+                                           const TumSequence& sequence) {
+  if (!arguments.groundtruth.empty()) return read_trajectory(arguments.groundtruth);
+  const std::optional<std::filesystem::path> own = sequence.groundtruth_file();
+  return own ? std::optional(read_trajectory(*own)) : std::nullopt;
+}
+
+void evaluate(RunReport& report) {
+  if (!report.groundtruth) return;
+  report.ate = absolute_trajectory_error(*report.groundtruth, report.estimate);
+  report.rpe = relative_pose_error(*report.groundtruth, report.estimate);
+  if (!report.ate) {
+    report.warnings.push_back("no ground-truth pose is within 0.02 s of three tracked frames");
+  }
+}
+
+std::string summary(const RunArguments& arguments, const RunReport& report) {
+  std::string text = fmt::format("tracked     {} of {} frames, {} key frames\n",
+                                 report.frames_tracked,
+                                 report.frames_total,
+                                 report.keyframes.size());
+  if (report.ate) {
+    text += fmt::format("ATE         {:.4f} m rmse over {} poses\n",
+                        report.ate->translation_m.rmse,
+                        report.ate->pairs.size());
+  }
+  text += fmt::format("map         {} points\n", report.map->size());
+  text += fmt::format("time        {:.1f} s, {:.1f} frames a second\n",
+                      *report.wall_s,
+                      static_cast<double>(report.frames_total) / *report.wall_s);
+  text += fmt::format("report      {}\n",
+                      (std::filesystem::path(arguments.out) / "report.html").string());
+  return text;
+}
+
+int run(const RunArguments& arguments) {
+  check_modes(arguments);
+  SystemConfig config = make_config(arguments);
+  const TumSequence sequence =
+      TumSequence::open(arguments.sequence, {.camera = chosen_camera(arguments.camera)});
+  std::optional<Trajectory> groundtruth = read_groundtruth(arguments, sequence);
+  prepare_run_folder(arguments.out);
+
+  RunOptions options;
+  if (!arguments.frames.empty()) options.frames = parse_frames(arguments.frames);
+  options.frames.stride = arguments.stride;
+  options.threads = arguments.threads;
+  ProgressBar progress("frames");
+  options.on_progress = [&](std::size_t done, std::size_t total) { progress.show(done, total); };
+  options.on_warning = [&](const std::string& warning) { progress.warn(warning); };
+  SequenceRun run = run_sequence(sequence, config, options);
+  progress.finish();
+
+  RunReport& report = run.report;
+  report.version = kVersion;
+  report.config_yaml = dump_yaml(list_fields(config));
+  report.groundtruth = std::move(groundtruth);
+  report.map = &run.result.map;
+  evaluate(report);
+  write_run_folder(arguments.out, run.result, report);
+  print_output(summary(arguments, report));
+  return run.result.lost_at_end ? kLostForGood : 0;
+}
+
+void add_inputs(CLI::App& command, RunArguments& arguments) {
+  command.add_option("SEQUENCE", arguments.sequence, "folder in the TUM RGB-D layout")->required();
+  command.add_option(
+      "--camera",
+      arguments.camera,
+      "tum_fr1, tum_fr2, tum_fr3, bonn or a camera.yaml; instead of the sequence's own");
+  command.add_option("--frames", arguments.frames, "A:B, only frames A to B - 1, counted from 0");
+  command.add_option("--stride", arguments.stride, "take every N-th frame")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1000}));
+  command.add_option("--groundtruth",
+                     arguments.groundtruth,
+                     "trajectory to compare with; instead of the sequence's own");
+}
+
+void add_settings(CLI::App& command, RunArguments& arguments) {
+  command.add_option("--out", arguments.out, "folder for the results")->required();
+  command.add_option("--config", arguments.config_file, "settings, see `stillmap config`");
+  command.add_option("--set", arguments.settings, "one setting, key=value; repeatable")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command.add_option("--segmenter", arguments.segmenter, "none, in this version")
+      ->capture_default_str();
+  command.add_option("--dynamics", arguments.dynamics, "off, in this version")
+      ->capture_default_str();
+  command.add_option("--threads", arguments.threads, "1 or more; the result is the same")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app, CommandResult& result) {
+  CLI::App* command = app.add_subcommand("run", "Trajectory, map and report of a sequence");
+  const auto arguments = std::make_shared<RunArguments>();
+  add_inputs(*command, *arguments);
+  add_settings(*command, *arguments);
+  command->footer(
+      "Examples:\n"
+      "  stillmap run rgbd_dataset_freiburg1_xyz --out result\n"
+      "  stillmap run office --out result --frames 0:300 --set cloud.voxel_size_m=0.02\n"
+      "Exit code 3 says that tracking was lost for good: the results end before the sequence "
+      "does.");
+  command->callback([arguments, &result] { result.exit_code = run(*arguments); });
+}
+
+}  // namespace stillmap

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+
+#include "stillmap/cloud/global_cloud.hpp"
+#include "stillmap/cloud/local_cloud.hpp"
+#include "stillmap/core/camera.hpp"
+#include "stillmap/core/se3.hpp"
+
+namespace stillmap {
+namespace {
+
+/// A wavy wall, 1.5 to 3.5 m away, with a colour gradient.
+RgbdFrame wall(const CameraModel& camera) {
+  RgbdFrame frame;
+  frame.depth = DepthImage(cv::Mat1f(camera.height_px, camera.width_px));
+  frame.color = ColorImage(cv::Mat3b(camera.height_px, camera.width_px));
+  for (int y = 0; y < camera.height_px; ++y) {
+    for (int x = 0; x < camera.width_px; ++x) {
+      frame.depth.mat(y, x) = static_cast<float>(2.5 + std::sin(x * 0.02) * std::cos(y * 0.03));
+      frame.color.mat(y, x) =
+          cv::Vec3b(static_cast<std::uint8_t>(x / 3), static_cast<std::uint8_t>(y / 2), 100);
+    }
+  }
+  return frame;
+}
+
+void make_local_cloud(benchmark::State& state) {
+  const CameraModel camera = builtin_camera("tum_fr3");
+  const RgbdFrame frame = wall(camera);
+  const cv::Mat2f rays = pixel_rays(camera);
+  std::size_t points = 0;
+  for (auto _ : state) {
+    const PointCloud cloud = local_cloud(frame, rays, {});
+    points = cloud.size();
+    benchmark::DoNotOptimize(cloud.positions.data());
+  }
+  state.counters["points"] = static_cast<double>(points);
+}
+BENCHMARK(make_local_cloud)->Unit(benchmark::kMillisecond);
+
+/// Key frames 10 cm and about 3 degrees apart, all of which see such a wall.
+void assemble_global_cloud(benchmark::State& state) {
+  const CameraModel camera = builtin_camera("tum_fr3");
+  PointCloud local = local_cloud(wall(camera), pixel_rays(camera), {});
+  local.positions.resize(std::min<std::size_t>(local.size(), 60000));
+  local.colors.resize(local.size());
+  std::vector<PosedCloud> clouds;
+  for (int i = 0; i < state.range(0); ++i) {
+    clouds.push_back({make_pose(so3_exp({0, 0.05 * i, 0}), {0.1 * i, 0, 0}), &local});
+  }
+  std::size_t points = 0;
+  for (auto _ : state) {
+    const PointCloud cloud = global_cloud(clouds, 0.01);
+    points = cloud.size();
+    benchmark::DoNotOptimize(cloud.positions.data());
+  }
+  state.counters["points_in"] = static_cast<double>(local.size() * clouds.size());
+  state.counters["points_out"] = static_cast<double>(points);
+}
+BENCHMARK(assemble_global_cloud)->Arg(20)->Arg(100)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace stillmap

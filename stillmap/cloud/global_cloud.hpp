@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+
+#include <Eigen/Geometry>
+
+#include "stillmap/core/point_cloud.hpp"
+
+namespace stillmap {
+
+/// A key frame's cloud (see local_cloud) and where the key frame is.
+struct PosedCloud {
+  Eigen::Isometry3d T_world_keyframe;
+  const PointCloud* cloud;  ///< not null; not owned
+};
+
+/// The union of the clouds in world coordinates (Fan 2020, Eq. (1)), thinned to one point a voxel
+/// as VoxelGrid does it: mean position and colour, winning label. A cloud without labels has label
+/// 0 everywhere; normals are left out.
+[[nodiscard]] PointCloud global_cloud(std::span<const PosedCloud> clouds, double voxel_size_m);
+
+}  // namespace stillmap

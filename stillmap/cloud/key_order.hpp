@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace stillmap {
+
+struct IndexedKey {
+  std::uint64_t key = 0;
+  std::uint32_t index = 0;
+};
+
+/// Sorted by key in linear time, equal keys in the order given.
+[[nodiscard]] std::vector<IndexedKey> sorted_by_key(std::vector<IndexedKey> keys);
+
+}  // namespace stillmap

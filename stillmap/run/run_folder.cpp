@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/run/run_folder.hpp"
+
+#include "stillmap/core/error.hpp"
+#include "stillmap/io/atomic_file.hpp"
+#include "stillmap/io/ply.hpp"
+#include "stillmap/io/trajectory_io.hpp"
+#include "stillmap/report/report_html.hpp"
+#include "stillmap/report/report_json.hpp"
+
+namespace stillmap {
+
+void prepare_run_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error || !std::filesystem::is_directory(folder)) {
+    throw Error("{}: cannot make this folder ({}); choose another with --out",
+                folder.string(),
+                error ? error.message() : "a file has its name");
+  }
+  const std::filesystem::path probe = folder / "trajectory.txt.probe";
+  write_file_atomically(probe, "");
+  std::filesystem::remove(probe, error);
+}
+
+void write_run_folder(const std::filesystem::path& folder,
+                      const RunResult& result,
+                      const RunReport& report) {
+  write_file_atomically(folder / "trajectory.txt", format_trajectory(result.trajectory));
+  write_file_atomically(folder / "keyframes.txt", format_trajectory(result.keyframes));
+  write_file_atomically(folder / "config.yaml", report.config_yaml);
+  write_file_atomically(folder / "map.ply", encode_ply(result.map));
+  write_file_atomically(folder / "report.json", report_json(report));
+  write_file_atomically(folder / "report.html", report_html(report));
+}
+
+}  // namespace stillmap

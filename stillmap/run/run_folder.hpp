@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+#include "stillmap/report/run_report.hpp"
+#include "stillmap/system/system.hpp"
+
+namespace stillmap {
+
+/// Makes the folder where it is missing and sees that files can be written there, so that a long
+/// run does not end in vain. Throws Error naming it.
+void prepare_run_folder(const std::filesystem::path& folder);
+
+/// Writes trajectory.txt, keyframes.txt, config.yaml, map.ply, report.json and report.html, each
+/// whole or not at all, the trajectory first. Throws Error naming the file that could not be
+/// written.
+void write_run_folder(const std::filesystem::path& folder,
+                      const RunResult& result,
+                      const RunReport& report);
+
+}  // namespace stillmap

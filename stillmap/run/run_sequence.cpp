@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/run/run_sequence.hpp"
+
+#include <algorithm>
+#include <charconv>
+
+#include <sys/resource.h>
+
+#include "stillmap/core/error.hpp"
+#include "stillmap/run/frame_source.hpp"
+#include "stillmap/system/stopwatch.hpp"
+
+namespace stillmap {
+namespace {
+
+constexpr std::size_t kSamples = 8;
+constexpr std::size_t kFramesPerDamaged = 50;
+
+std::vector<FrameId> select_frames(const TumSequence& sequence, const FrameSelection& selection) {
+  const std::size_t end = std::min(selection.end.value_or(sequence.size()), sequence.size());
+  std::vector<FrameId> frames;
+  for (std::size_t i = selection.begin; i < end; i += selection.stride) {
+    frames.emplace_back(static_cast<std::uint32_t>(i));
+  }
+  if (frames.empty()) {
+    throw Error("--frames begins at {}, but {} has only {} frames",
+                selection.begin,
+                sequence.folder().string(),
+                sequence.size());
+  }
+  return frames;
+}
+
+double peak_memory_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+SampleFrame make_sample(const RgbdFrame& frame, const TrackedFrame& tracked) {
+  SampleFrame sample{frame.stamp, frame.color, {}, {}};
+  for (std::size_t i = 0; i < tracked.landmarks.size(); ++i) {
+    auto& list = tracked.landmarks[i].valid() ? sample.tracked_px : sample.untracked_px;
+    list.push_back(tracked.features->raw_px[i]);
+  }
+  return sample;
+}
+
+void add_stage_time(std::vector<StageTimes>& stages, std::string_view name, double ms) {
+  const auto at = std::ranges::find(stages, name, &StageTimes::name);
+  if (at != stages.end()) {
+    at->ms.push_back(ms);
+  } else {
+    stages.push_back({std::string(name), {ms}});
+  }
+}
+
+void add_frame(RunReport& report, const RgbdFrame& frame, const FrameResult& result) {
+  report.frame_ms.push_back(result.pose_ms);
+  report.tracked_features.push_back(result.tracked.inliers);
+  for (const StageTime& time : result.stages) add_stage_time(report.stages, time.stage, time.ms);
+  if (!has_pose(result.tracked)) report.lost.push_back(frame.stamp);
+}
+
+void skip_frame(RunReport& report,
+                const Stamp& stamp,
+                const std::string& damage,
+                const RunOptions& options) {
+  report.skipped.push_back({stamp, damage});
+  const std::size_t allowed = report.frames_total / kFramesPerDamaged;
+  if (report.skipped.size() > allowed) {
+    throw Error("{} ({} damaged so far; at most {} of {} frames may be)",
+                damage,
+                report.skipped.size(),
+                allowed,
+                report.frames_total);
+  }
+  report.warnings.push_back("frame skipped: " + damage);
+  if (options.on_warning) options.on_warning(report.warnings.back());
+}
+
+}  // namespace
+
+FrameSelection parse_frames(const std::string& text) {
+  const Error bad("--frames {}: expected A:B with A < B, counted from 0, such as 0:100 or 50:",
+                  text);
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos) throw bad;
+  const auto number = [&](std::string_view digits) {
+    std::size_t value = 0;
+    const auto [last, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (error != std::errc() || last != digits.data() + digits.size()) throw bad;
+    return value;
+  };
+  const std::string_view begin = std::string_view(text).substr(0, colon);
+  const std::string_view end = std::string_view(text).substr(colon + 1);
+  FrameSelection selection;
+  if (!begin.empty()) selection.begin = number(begin);
+  if (!end.empty()) selection.end = number(end);
+  if (selection.end && *selection.end <= selection.begin) throw bad;
+  return selection;
+}
+
+SequenceRun run_sequence(const TumSequence& sequence,
+                         const SystemConfig& config,
+                         const RunOptions& options) {
+  Stopwatch wall;
+  const std::vector<FrameId> frames = select_frames(sequence, options.frames);
+  System system(config, sequence.camera(), options.threads);
+  FrameSource source(sequence, frames, options.threads > 1);
+  SequenceRun run;
+  RunReport& report = run.report;
+  report.sequence = sequence.name();
+  report.frames_total = frames.size();
+
+  std::size_t done = 0;
+  Stopwatch waiting;
+  while (std::optional<SourcedFrame> next = source.next()) {
+    add_stage_time(report.stages, "reading", waiting.lap_ms());
+    if (next->frame == nullptr) {
+      skip_frame(report, sequence.entry(next->id).stamp, next->damage, options);
+    } else {
+      const FrameResult result = system.process(next->frame);
+      add_frame(report, *next->frame, result);
+      if (done * kSamples / frames.size() != (done + 1) * kSamples / frames.size()) {
+        report.samples.push_back(make_sample(*next->frame, result.tracked));
+      }
+    }
+    ++done;
+    if (options.on_progress) options.on_progress(done, frames.size());
+    waiting.lap_ms();
+  }
+  run.result = system.finish();
+  report.camera = sequence.camera();
+  report.camera.readout_s = system.readout_s();
+  report.frames_tracked = run.result.trajectory.size();
+  report.estimate = run.result.trajectory;
+  report.keyframes = run.result.keyframes;
+  report.wall_s = wall.lap_ms() / 1000.0;
+  report.peak_memory_mb = peak_memory_mb();
+  return run;
+}
+
+}  // namespace stillmap

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "stillmap/io/tum_sequence.hpp"
+#include "stillmap/report/run_report.hpp"
+#include "stillmap/system/system.hpp"
+
+namespace stillmap {
+
+/// Which frames of a sequence: [begin, end) in steps of `stride`.
+struct FrameSelection {
+  std::size_t begin = 0;
+  std::optional<std::size_t> end;  ///< nothing: to the last
+  std::size_t stride = 1;
+};
+
+/// Reads "A:B", "A:", ":B", with A < B, counted from 0, B left out. Throws Error for anything else.
+[[nodiscard]] FrameSelection parse_frames(const std::string& text);
+
+struct RunOptions {
+  FrameSelection frames;
+  int threads = 2;
+  std::function<void(std::size_t done, std::size_t total)> on_progress;  ///< may be empty
+  std::function<void(const std::string&)> on_warning;                    ///< may be empty
+};
+
+struct SequenceRun {
+  RunResult result;
+  /// All that the run itself knows; `map` is not set. What concerns ground truth, configuration and
+  /// version is the caller's.
+  RunReport report;
+};
+
+/// Runs the system over a sequence. A damaged image inside a long sequence costs its frame, with a
+/// warning; more than one frame in fifty, or any in a sequence below fifty frames, is an Error, and
+/// so is an image of the wrong kind or size. The result does not depend on the number of threads.
+[[nodiscard]] SequenceRun run_sequence(const TumSequence& sequence,
+                                       const SystemConfig& config,
+                                       const RunOptions& options);
+
+}  // namespace stillmap

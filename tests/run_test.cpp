@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+// `stillmap run` from outside: what it writes, that it is right, and each way in which it refuses.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "stillmap/io/image_io.hpp"
+#include "stillmap/io/ply.hpp"
+#include "stillmap/io/trajectory_io.hpp"
+#include "tests/cli_fixture.hpp"
+#include "tests/plane_sequence.hpp"
+
+namespace stillmap {
+namespace {
+
+using testing::HasSubstr;
+using testing::MatchesRegex;
+
+class Run : public Cli {
+ protected:
+  static constexpr int kFrames = 60;
+
+  Run() { write_plane_sequence(folder_ / "wall", kFrames); }
+
+  [[nodiscard]] std::string stamp(int frame) const {
+    return fmt::format("{:.6f}", 100 + frame / 30.0);
+  }
+  [[nodiscard]] std::filesystem::path rgb(int frame) const {
+    return folder_ / "wall" / "rgb" / (stamp(frame) + ".png");
+  }
+
+  // One clear line, exit code 2, no results.
+  void expect_refused(const std::string& arguments, const std::string& part) const {
+    const Outcome outcome = run("run " + arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments;
+    EXPECT_THAT(outcome.err, MatchesRegex("stillmap: [^\n]*\n")) << arguments;
+    EXPECT_THAT(outcome.err, HasSubstr(part)) << arguments;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "out" / "trajectory.txt")) << arguments;
+  }
+};
+
+TEST_F(Run, WritesARunFolderThatAgreesWithTheTruth) {
+  const Outcome outcome = run("run wall --out out");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+
+  const nlohmann::json report = nlohmann::json::parse(content("out/report.json"));
+  EXPECT_EQ(report["frames"]["total"], kFrames);
+  EXPECT_EQ(report["frames"]["ratio"], 1.0);
+  EXPECT_LT(report["ate"]["rmse"], 0.002);
+  EXPECT_EQ(report["ate"]["pairs"], kFrames);
+  EXPECT_GT(report["time"]["frame_ms"]["median"], 0.0);
+  EXPECT_GT(report["memory"]["peak_mb"], 0.0);
+
+  // The last frame, against the motion that the pictures were made with.
+  const Trajectory trajectory = read_trajectory(folder_ / "out" / "trajectory.txt");
+  ASSERT_EQ(trajectory.size(), static_cast<std::size_t>(kFrames));
+  EXPECT_EQ(trajectory.back().stamp.text, stamp(kFrames - 1));
+  const Eigen::Vector3d moved =
+      trajectory.front().T_world_camera.inverse() * trajectory.back().T_world_camera.translation();
+  EXPECT_LT((moved - Eigen::Vector3d(0.002, 0.001, 0) * (kFrames - 1)).norm(), 0.004);
+
+  // The map is the wall and the board.
+  const PointCloud map = read_ply(folder_ / "out" / "map.ply");
+  ASSERT_GT(map.size(), 10000U);
+  double squares = 0;
+  for (const Eigen::Vector3f& p : map.positions) {
+    squares += std::pow(std::min(std::abs(p.z() - 1.5F), std::abs(p.z() - 0.9F)), 2);
+  }
+  EXPECT_LT(std::sqrt(squares / static_cast<double>(map.size())), 0.01);
+  EXPECT_THAT(content("out/report.html"), HasSubstr("</html>"));
+}
+
+TEST_F(Run, IsTheSameToTheBitForAnyThreadsSeedsAndRepeats) {
+  ASSERT_EQ(run("run wall --out a --threads 1").exit_code, 0);
+  ASSERT_EQ(run("run wall --out b --threads 2").exit_code, 0);
+  ASSERT_EQ(run("run wall --out c --threads 4").exit_code, 0);
+  for (const char* file : {"trajectory.txt", "keyframes.txt", "map.ply"}) {
+    EXPECT_FALSE(content(std::string("a/") + file).empty());
+    EXPECT_TRUE(content(std::string("a/") + file) == content(std::string("b/") + file)) << file;
+    EXPECT_TRUE(content(std::string("a/") + file) == content(std::string("c/") + file)) << file;
+  }
+}
+
+TEST_F(Run, ItsConfigurationCanBeLoadedAgain) {
+  ASSERT_EQ(run("run wall --out a --set seed=7 --set cloud.voxel_size_m=0.02").exit_code, 0);
+  ASSERT_EQ(run("run wall --out b --config a/config.yaml").exit_code, 0);
+  EXPECT_EQ(content("a/config.yaml"), content("b/config.yaml"));
+  EXPECT_TRUE(content("a/map.ply") == content("b/map.ply"));
+  ASSERT_EQ(run("run wall --out c").exit_code, 0);
+  EXPECT_LT(content("a/map.ply").size(), content("c/map.ply").size());  // coarser voxels, less
+}
+
+TEST_F(Run, TakesPartsOfASequence) {
+  ASSERT_EQ(run("run wall --out out --frames 10:40 --stride 3").exit_code, 0);
+  const Trajectory trajectory = read_trajectory(folder_ / "out" / "trajectory.txt");
+  ASSERT_EQ(trajectory.size(), 10U);
+  EXPECT_EQ(trajectory.front().stamp.text, stamp(10));
+  EXPECT_EQ(trajectory.back().stamp.text, stamp(37));
+}
+
+TEST_F(Run, RefusesWhatIsNoSequence) {
+  expect_refused("nowhere --out out", "nowhere: no such folder");
+  write("wall/rgb.txt", "# empty\n");
+  expect_refused("wall --out out", "rgb.txt");
+  write("wall/rgb.txt", "2.0 rgb/a.png\n1.0 rgb/b.png\n");
+  expect_refused("wall --out out", "rgb.txt:2");
+  write("wall/rgb.txt", "5.0 rgb/a.png\n6.0 rgb/b.png\n");  // far from every depth stamp
+  expect_refused("wall --out out", "0.02");
+  write("wall/rgb.txt", "100.0 ../../etc/passwd\n");
+  expect_refused("wall --out out", "rgb.txt:1");
+}
+
+TEST_F(Run, RefusesWrongArguments) {
+  expect_refused("wall --out out --camera tum_fr9", "did you mean 'tum_fr1'?");
+  expect_refused("wall --out out --set tracking.feature=900", "did you mean 'tracking.features'?");
+  expect_refused("wall --out out --set tracking.features=many", "tracking.features");
+  expect_refused("wall --out out --set mapping.lag_frames=9", "keyframe.min_gap_frames");
+  expect_refused("wall --out out --set loop.enabled=true", "loop.enabled");
+  expect_refused("wall --out out --dynamics ful", "did you mean 'full'?");
+  expect_refused("wall --out out --dynamics full", "not in this version");
+  expect_refused("wall --out out --segmenter auto", "not in this version");
+  for (const char* frames : {"5", "9:3", "a:b", ":-1", "4:4"}) {
+    expect_refused("wall --out out --frames " + std::string(frames), "expected A:B");
+  }
+  expect_refused("wall --out out --frames 900:", "has only 60 frames");
+  write("c.yaml", "tracking:\n  featurs: 3\n");
+  expect_refused("wall --out out --config c.yaml", "c.yaml:2");
+}
+
+TEST_F(Run, RefusesBrokenGroundTruth) {
+  write("bad.txt", "100.0 0 0 0 0 0 0 1\n100.1 nan 0 0 0 0 0 1\n");
+  expect_refused("wall --out out --groundtruth bad.txt", "bad.txt:2");
+}
+
+TEST_F(Run, RefusesAnImageOfWrongSizeOrKindHalfway) {
+  const std::string whole = content("wall/rgb/" + stamp(30) + ".png");
+  write("wall/rgb/" + stamp(30) + ".png", encode_png(ColorImage(cv::Mat3b(100, 100))));
+  expect_refused("wall --out out", "100x100 pixels, expected 320x240");
+  write("wall/rgb/" + stamp(30) + ".png", whole);
+  write("wall/depth/" + stamp(30) + ".png", whole);
+  expect_refused("wall --out out", "expected 16-bit gray");
+}
+
+TEST_F(Run, SkipsOneDamagedImageInALongSequenceAndSaysSo) {
+  std::filesystem::resize_file(rgb(30), std::filesystem::file_size(rgb(30)) / 2);
+  const Outcome outcome = run("run wall --out out");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.err,
+              MatchesRegex("stillmap: warning: frame skipped: [^\n]*broken PNG[^\n]*\n"));
+  const nlohmann::json report = nlohmann::json::parse(content("out/report.json"));
+  EXPECT_EQ(report["frames"]["skipped"].size(), 1U);
+  EXPECT_EQ(report["frames"]["tracked"], kFrames - 1);
+
+  std::filesystem::remove_all(folder_ / "out");
+  std::filesystem::remove(rgb(31));  // a second one in 60 is no accident any more
+  const Outcome refused = run("run wall --out out");
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("no such file"));
+  EXPECT_THAT(refused.err, HasSubstr("2 damaged so far"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out" / "trajectory.txt"));
+}
+
+TEST_F(Run, RefusesAFolderThatCannotBeWritten) {
+  write("file", "");
+  expect_refused("wall --out file", "file: cannot make this folder");
+  expect_refused("wall --out /proc/results", "/proc/results");
+  expect_refused("wall --out /dev/full/results", "/dev/full/results");
+}
+
+TEST_F(Run, AFullDiskIsOneLineAndLeavesNoHalfFile) {
+  // No file beyond 64 KiB: the map does not fit, the trajectory does.
+  const Outcome outcome =
+      run("config > /dev/null; ulimit -f 64; trap '' XFSZ; '" STILLMAP_BINARY_DIR
+          "/bin/stillmap' run wall --out out");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, MatchesRegex("stillmap: [^\n]*map.ply[^\n]*\n"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / "trajectory.txt"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out" / "map.ply"));
+  for (const auto& entry : std::filesystem::directory_iterator(folder_ / "out")) {
+    EXPECT_THAT(entry.path().filename().string(), testing::Not(HasSubstr("tmp")));
+  }
+}
+
+TEST_F(Run, LostForGoodIsExitCodeThree) {
+  for (int i = 40; i < kFrames; ++i) {
+    write("wall/rgb/" + stamp(i) + ".png", encode_png(ColorImage(cv::Mat3b::zeros(240, 320))));
+  }
+  const Outcome outcome = run("run wall --out out");
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_EQ(read_trajectory(folder_ / "out" / "trajectory.txt").size(), 40U);
+  const nlohmann::json report = nlohmann::json::parse(content("out/report.json"));
+  EXPECT_EQ(report["frames"]["lost"].size(), 20U);
+}
+
+TEST_F(Run, FindsItsPlaceAgainAfterTheCameraWasCovered) {
+  for (int i = 20; i < 30; ++i) {
+    write("wall/rgb/" + stamp(i) + ".png", encode_png(ColorImage(cv::Mat3b::zeros(240, 320))));
+  }
+  ASSERT_EQ(run("run wall --out out").exit_code, 0);
+  const nlohmann::json report = nlohmann::json::parse(content("out/report.json"));
+  EXPECT_EQ(report["frames"]["tracked"], kFrames - 10);
+  EXPECT_LT(report["ate"]["rmse"], 0.003);
+}
+
+}  // namespace
+}  // namespace stillmap
