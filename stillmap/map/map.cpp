@@ -237,11 +237,12 @@ MapUpdate Map::take_changes() {
 void Map::apply(const MapUpdate& update) {
   for (const auto& [gone, into] : update.merged_landmarks) {
     merged_into_[gone] = into;
-    // Landmarks that were made in the window have no counts here yet.
-    const auto source = landmarks_.find(gone), target = landmarks_.find(into);
-    if (source == landmarks_.end() || target == landmarks_.end()) continue;
-    target->second.times_expected += source->second.times_expected;
-    target->second.times_found += source->second.times_found;
+    // Both exist at least for their counts: one that was made in the window begins with fresh ones,
+    // and is filled in or removed below.
+    Landmark& target = landmarks_[into];
+    const Landmark& source = landmarks_[gone];
+    target.times_expected += source.times_expected;
+    target.times_found += source.times_found;
   }
   for (const LandmarkId id : update.removed_landmarks) landmarks_.erase(id);
   for (const Landmark& changed : update.landmarks) {

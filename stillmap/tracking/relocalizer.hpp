@@ -20,7 +20,7 @@ struct RelocalizerConfig {
   static void fields(Self& self, Visitor& visit) {
     visit("candidates",
           self.candidates,
-          FieldInfo{"key frames tried in a frame while lost", "", 1, 1000});
+          FieldInfo{"key frames tried in a frame while lost", "", 3, 1000});
     visit("iterations", self.iterations, FieldInfo{"of RANSAC, per key frame", "", 1, 100000});
     visit("min_inliers", self.min_inliers, FieldInfo{"that prove a place", "", 4, 1000});
   }

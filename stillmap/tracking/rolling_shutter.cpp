@@ -62,6 +62,9 @@ void ReadoutEstimator::update(const Eigen::Isometry3d& T_camera_world,
   double information = 0, gradient = 0;
   for (std::size_t i = 0; i < observations.size(); ++i) {
     const PointMeasurement& m = observations[i].measurement;
+    // Without depth a feature is only turned back, so what is left of its error is no error of the
+    // readout alone.
+    if (!m.has_depth()) continue;
     const Eigen::Vector3d p = T_camera_world * observations[i].p_world;
     const Eigen::Vector3d r = reprojection_residual(camera_, m, p);
     const Eigen::Matrix3d J_point = reprojection_jacobian(camera_, m, p);
@@ -80,7 +83,9 @@ void ReadoutEstimator::update(const Eigen::Isometry3d& T_camera_world,
   if (!(information > 0)) return;
   // The residuals belong to the readout that was corrected with; the estimate may differ from it.
   gradient += information * (estimate_s_ - readout_s());
-  information_ = config_.memory * information_ + information;
+  // What was learnt in motion is not forgotten while the camera stands: the little "motion" that
+  // noise makes there tells nothing and would pull the estimate to zero.
+  information_ = std::max(information_, config_.memory * information_ + information);
   estimate_s_ = std::clamp(estimate_s_ - gradient / information_, 0.0, config_.max_readout_s);
 }
 

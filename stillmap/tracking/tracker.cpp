@@ -159,9 +159,10 @@ Tracker::Matches Tracker::match_last_frame(const Features& features,
   Matches points;
   std::vector<Projection> projections;
   std::vector<float> angles;
+  std::unordered_set<LandmarkId> known;  // two features' landmarks may have been merged since
   for (std::uint32_t i = 0; i < last.size(); ++i) {
     const LandmarkId id = map.resolve(last_->landmarks[i]);
-    if (!id.valid() && !measure_.has_depth(last, i)) continue;
+    if (id.valid() ? !known.insert(id).second : !measure_.has_depth(last, i)) continue;
     const Eigen::Vector3d p_world =
         id.valid() ? map.landmark(id).p_world
                    : T_world_last * camera_.unproject(last.px[i].cast<double>(),

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/tracking/relocalizer.hpp"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "stillmap/testing/simulated_map.hpp"
+#include "stillmap/tracking/test_paths.hpp"
+
+namespace stillmap {
+namespace {
+
+constexpr ObservationNoise kNoise{
+    .pixel_sigma_px = 0.5, .inverse_depth_sigma = 0.01, .flipped_bits = 15};
+
+Eigen::Isometry3d yawed(double degrees) {
+  return make_pose(so3_exp(Eigen::Vector3d(0, degrees * 3.14159265358979 / 180, 0)),
+                   Eigen::Vector3d::Zero());
+}
+
+Relocalizer make_relocalizer(const SimulatedWorld& world,
+                             const RelocalizerConfig& config = {},
+                             std::uint32_t seed = 0) {
+  const MeasurementModel measure({.pixel_sigma_px = 0.5, .inverse_depth_sigma = 0.01},
+                                 world.level_scales());
+  return Relocalizer(config, world.camera(), measure, seed);
+}
+
+// Key frames all round, 30 degrees apart.
+SimulatedMap map_all_round(const SimulatedWorld& world) {
+  std::vector<Eigen::Isometry3d> poses;
+  for (int k = 0; k < 12; ++k) poses.push_back(yawed(30 * k));
+  std::mt19937 rng(4);
+  return make_true_map(world, poses, kNoise, rng);
+}
+
+TEST(Relocalizer, FindsThePoseAmongKeyframes) {
+  const SimulatedWorld world({}, simulated_camera());
+  const SimulatedMap simulated = map_all_round(world);
+  const Relocalizer relocalizer = make_relocalizer(world);
+  std::mt19937 rng(5);
+  for (const double degrees : {5.0, 95.0, 200.0}) {
+    Eigen::Isometry3d truth = yawed(degrees);
+    truth.translation() = Eigen::Vector3d(0.2, -0.1, 0.15);
+    const Observed seen = world.observe(truth, kNoise, rng);
+    std::optional<Relocalization> found;
+    for (std::uint32_t frame = 0; frame < 4 && !found; ++frame) {
+      found = relocalizer.find(FrameId(frame), seen.features, simulated.map, KeyframeId(0));
+    }
+    ASSERT_TRUE(found) << degrees;
+    EXPECT_LT((found->T_camera_world.inverse().translation() - truth.translation()).norm(), 0.03);
+    EXPECT_LT(rotation_angle((found->T_camera_world * truth).linear()), 0.005);
+    EXPECT_GE(found->matches.size(), 25U);
+    for (const auto& [feature, landmark] : found->matches) {
+      EXPECT_EQ(seen.points[feature], true_point(simulated, simulated.map.landmark(landmark)));
+    }
+  }
+}
+
+TEST(Relocalizer, FindsItAmongManyWrongMatches) {
+  const SimulatedWorld world({}, simulated_camera());
+  const SimulatedMap simulated = map_all_round(world);
+  std::mt19937 rng(5);
+  Observed seen = world.observe(yawed(10), kNoise, rng);
+  // Half of the features look like another feature.
+  for (std::size_t i = 2; i < seen.features.size(); i += 2) {
+    std::swap(seen.features.descriptors[i], seen.features.descriptors[i - 2]);
+    seen.features.angle_deg[i] = seen.features.angle_deg[i - 2];
+  }
+  const std::optional<Relocalization> found =
+      make_relocalizer(world).find(FrameId(0), seen.features, simulated.map, KeyframeId(0));
+  ASSERT_TRUE(found);
+  EXPECT_LT((found->T_camera_world * yawed(10)).translation().norm(), 0.01);
+}
+
+TEST(Relocalizer, DoesNotFindAnUnknownPlace) {
+  const SimulatedWorld world({}, simulated_camera());
+  const SimulatedMap simulated = map_all_round(world);
+  const SimulatedWorld elsewhere({.seed = 99}, simulated_camera());
+  std::mt19937 rng(5);
+  const Observed seen = elsewhere.observe(yawed(0), kNoise, rng);
+  const Relocalizer relocalizer = make_relocalizer(world);
+  for (std::uint32_t frame = 0; frame < 4; ++frame) {
+    EXPECT_FALSE(relocalizer.find(FrameId(frame), seen.features, simulated.map, KeyframeId(0)));
+  }
+}
+
+TEST(Relocalizer, DoesNotFindKnownCornersInAnotherArrangement) {
+  const SimulatedWorld world({}, simulated_camera());
+  const SimulatedMap simulated = map_all_round(world);
+  std::mt19937 rng(5);
+  Observed seen = world.observe(yawed(0), kNoise, rng);
+  std::ranges::shuffle(seen.features.px, rng);
+  std::ranges::shuffle(seen.features.depth_m, rng);
+  EXPECT_FALSE(
+      make_relocalizer(world).find(FrameId(0), seen.features, simulated.map, KeyframeId(0)));
+}
+
+TEST(Relocalizer, IsTheSameBitsForASeed) {
+  const SimulatedWorld world({}, simulated_camera());
+  const SimulatedMap simulated = map_all_round(world);
+  std::mt19937 rng(5);
+  const Observed seen = world.observe(yawed(10), kNoise, rng);
+  const auto find = [&](std::uint32_t seed) {
+    return make_relocalizer(world, {.iterations = 5}, seed)
+        .find(FrameId(3), seen.features, simulated.map, KeyframeId(0));
+  };
+  const std::optional<Relocalization> first = find(7), second = find(7);
+  ASSERT_TRUE(first && second);
+  EXPECT_EQ(first->T_camera_world.matrix(), second->T_camera_world.matrix());
+  EXPECT_EQ(first->matches, second->matches);
+  bool seed_matters = false;
+  for (std::uint32_t seed = 0; seed < 10; ++seed) {
+    const std::optional<Relocalization> other = find(seed);
+    seed_matters =
+        seed_matters || !other || other->T_camera_world.matrix() != first->T_camera_world.matrix();
+  }
+  EXPECT_TRUE(seed_matters);
+}
+
+// Places that share nothing: key frame k stands at the origin of a world of its own.
+struct Places {
+  std::vector<SimulatedWorld> worlds;
+  SimulatedMap map;
+};
+
+Places separate_places(std::uint32_t count) {
+  Places places{{}, SimulatedMap(SimulatedWorld({}, simulated_camera()))};
+  std::mt19937 rng(6);
+  for (std::uint32_t k = 0; k < count; ++k) {
+    places.worlds.emplace_back(SimulatedWorld::Config{.points = 2000, .seed = 100 + k},
+                               simulated_camera());
+    const SimulatedWorld& world = places.worlds.back();
+    const KeyframeId id =
+        add_bare_keyframe(places.map, yawed(0), world.observe(yawed(0), kNoise, rng));
+    const std::vector<std::uint32_t>& points = places.map.points[k];
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+      places.map.map.add_landmark(world.points()[points[i]].position, {id, i});
+    }
+  }
+  return places;
+}
+
+TEST(Relocalizer, TriesEveryKeyframeOverSomeFrames) {
+  const Places places = separate_places(20);
+  std::mt19937 rng(7);
+  for (const int candidates : {3, 8}) {
+    const Relocalizer relocalizer = make_relocalizer(places.worlds[0], {.candidates = candidates});
+    // One is the last reference's; the other candidates take turns among 19.
+    const std::uint32_t frames = 19 / static_cast<std::uint32_t>(candidates - 1) + 1;
+    for (std::size_t k = 0; k < places.worlds.size(); ++k) {
+      const Observed seen = places.worlds[k].observe(yawed(3), kNoise, rng);
+      int found = 0;
+      for (std::uint32_t frame = 40; frame < 40 + frames; ++frame) {
+        found +=
+            relocalizer.find(FrameId(frame), seen.features, places.map.map, KeyframeId(0)) ? 1 : 0;
+      }
+      EXPECT_GE(found, 1) << "key frame " << k << ", candidates " << candidates;
+      if (k > 0) {
+        EXPECT_LE(found, 2) << "key frame " << k;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace stillmap
