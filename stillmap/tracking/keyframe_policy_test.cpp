@@ -17,22 +17,6 @@ FeaturesPtr features_at(float depth_m) {
   return std::make_shared<const Features>(std::move(features));
 }
 
-// `keyframes` key frames; the first `established` features of all see the same landmarks, the
-// others of the first see landmarks that nobody else does.
-Map map_with(int keyframes, std::uint32_t established) {
-  Map map({1.0F});
-  for (int k = 0; k < keyframes; ++k) {
-    Keyframe keyframe;
-    keyframe.features = features_at(2);
-    const KeyframeId id = map.add_keyframe(keyframe);
-    for (std::uint32_t i = 0; i < (k == 0 ? kFeatures : established); ++i) {
-      if (k == 0) map.add_landmark({0, 0, 2}, {id, i});
-      if (k > 0) map.add_observation(LandmarkId(i), {id, i});
-    }
-  }
-  return map;
-}
-
 // A frame that tracks `tracked` landmarks, all features at `depth_m`.
 TrackedFrame frame_with(std::uint32_t tracked, float depth_m = 2) {
   TrackedFrame frame;
@@ -45,62 +29,38 @@ TrackedFrame frame_with(std::uint32_t tracked, float depth_m = 2) {
   return frame;
 }
 
-bool wants(const TrackedFrame& frame, int gap, const Map& map) {
-  return wants_keyframe({}, frame, gap, map);
+bool wants(const TrackedFrame& frame, int frames, int most_inliers) {
+  return wants_keyframe({}, frame, {.frames = frames, .most_inliers = most_inliers});
 }
 
 TEST(WantsKeyframe, NeverTooSoonAndAlwaysAfterTheLongestGap) {
-  const Map map = map_with(4, 200);
-  EXPECT_FALSE(wants(frame_with(0), 3, map));
-  EXPECT_TRUE(wants(frame_with(0), 4, map));
-  EXPECT_FALSE(wants(frame_with(380), 29, map));
-  EXPECT_TRUE(wants(frame_with(380), 30, map));
+  EXPECT_FALSE(wants(frame_with(0), 3, 200));
+  EXPECT_TRUE(wants(frame_with(0), 4, 200));
+  EXPECT_FALSE(wants(frame_with(380), 29, 380));
+  EXPECT_TRUE(wants(frame_with(380), 30, 380));
 }
 
 TEST(WantsKeyframe, NeverOfALostFrame) {
   TrackedFrame lost = frame_with(0);
   lost.status = TrackingStatus::kLost;
-  EXPECT_FALSE(wants(lost, 1000, map_with(4, 200)));
+  EXPECT_FALSE(wants(lost, 1000, 200));
 }
 
-TEST(WantsKeyframe, WhenTooFewOfTheReferencesEstablishedLandmarksAreFound) {
-  const Map map = map_with(4, 200);  // needs 150; near landmarks suffice
-  EXPECT_TRUE(wants(frame_with(149), 10, map));
-  EXPECT_FALSE(wants(frame_with(150), 10, map));
-}
-
-TEST(WantsKeyframe, CountsLandmarksThatThreeSeeOrTwoInAYoungMap) {
-  EXPECT_FALSE(wants(frame_with(150), 10, map_with(2, 200)));
-  EXPECT_TRUE(wants(frame_with(149), 10, map_with(2, 200)));
-  EXPECT_TRUE(wants(frame_with(149), 10, map_with(3, 200)));
-  // Two see 200 landmarks, but there are three key frames: none counts.
-  Map map = map_with(2, 200);
-  Keyframe third;
-  third.features = features_at(2);
-  map.add_keyframe(third);
-  EXPECT_FALSE(wants(frame_with(149), 10, map));
+TEST(WantsKeyframe, WhenFewerLandmarksAreFoundThanSinceTheLastOne) {
+  EXPECT_TRUE(wants(frame_with(149), 10, 200));  // 75 % of 200 are 150
+  EXPECT_FALSE(wants(frame_with(150), 10, 200));
 }
 
 TEST(WantsKeyframe, WhenManyNearFeaturesCouldBecomeLandmarks) {
-  const Map map = map_with(4, 100);  // ratio asks for 75
-  EXPECT_TRUE(wants(frame_with(99), 10, map));
-  EXPECT_FALSE(wants(frame_with(100), 10, map));
-  EXPECT_FALSE(wants(frame_with(99, 3.1F), 10, map));  // far
-  EXPECT_FALSE(wants(frame_with(99, 0), 10, map));     // no depth
+  EXPECT_TRUE(wants(frame_with(99), 10, 100));
+  EXPECT_FALSE(wants(frame_with(100), 10, 100));
+  EXPECT_FALSE(wants(frame_with(99, 3.1F), 10, 100));  // far
+  EXPECT_FALSE(wants(frame_with(99, 0), 10, 100));     // no depth
   TrackedFrame few_left = frame_with(99);
   Features features = *few_left.features;
   for (std::uint32_t i = 99 + 69; i < kFeatures; ++i) features.depth_m[i] = 0;
   few_left.features = std::make_shared<const Features>(std::move(features));
-  EXPECT_FALSE(wants(few_left, 10, map));
-}
-
-TEST(WantsKeyframe, AsksTheAnchorOfADroppedReference) {
-  Map map = map_with(5, 200);
-  TrackedFrame frame = frame_with(149);
-  frame.reference = KeyframeId(4);
-  EXPECT_TRUE(wants(frame, 10, map));
-  map.remove_keyframe(KeyframeId(4), KeyframeId(3));
-  EXPECT_TRUE(wants(frame, 10, map));
+  EXPECT_FALSE(wants(few_left, 10, 100));
 }
 
 }  // namespace

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Accuracy on a real sequence, where it is there: 12 s of TUM's freiburg1_xyz.
+#include <gtest/gtest.h>
+
+#include "stillmap/eval/ate.hpp"
+#include "stillmap/io/io_test_support.hpp"
+#include "stillmap/io/trajectory_io.hpp"
+#include "stillmap/run/run_sequence.hpp"
+
+namespace stillmap {
+namespace {
+
+struct Accuracy {
+  double ate_m;
+  double tracked_ratio;
+};
+
+class Freiburg1Xyz : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = shared_data_folder() / "tum_fr1_xyz_360";
+    if (!std::filesystem::exists(folder_)) {
+      GTEST_SKIP() << folder_ << " is not there: set STILLMAP_DATA to the folder that holds it";
+    }
+  }
+
+  [[nodiscard]] Accuracy measure(const SystemConfig& config, std::size_t stride) const {
+    const TumSequence sequence = TumSequence::open(folder_, {.camera = builtin_camera("tum_fr1")});
+    RunOptions options;
+    options.frames.stride = stride;
+    const SequenceRun run = run_sequence(sequence, config, options);
+    const auto ate = absolute_trajectory_error(read_trajectory(folder_ / "groundtruth.txt"),
+                                               run.result.trajectory);
+    return {ate->translation_m.rmse,
+            static_cast<double>(run.report.frames_tracked) /
+                static_cast<double>(run.report.frames_total)};
+  }
+
+  std::filesystem::path folder_;
+};
+
+// ORB-SLAM2 has 0.0110 m on these files.
+TEST_F(Freiburg1Xyz, ErrorBelowACentimetreAtFullAndHalfFrameRate) {
+  for (const std::size_t stride : {1U, 2U}) {
+    const Accuracy accuracy = measure({}, stride);
+    EXPECT_LE(accuracy.ate_m, 0.010) << "every " << stride << ". frame";
+    EXPECT_EQ(accuracy.tracked_ratio, 1.0);
+  }
+}
+
+TEST_F(Freiburg1Xyz, ErrorGrowsByHalfWithoutTheRollingShutter) {
+  SystemConfig without;
+  without.tracking.tracker.shutter.calibrate = false;
+  EXPECT_GT(measure(without, 1).ate_m, 1.5 * measure({}, 1).ate_m);
+}
+
+}  // namespace
+}  // namespace stillmap
