@@ -11,7 +11,7 @@ namespace stillmap {
 
 struct MeasurementConfig {
   double pixel_sigma_px = 1.0;
-  double inverse_depth_sigma = 0.03;
+  double inverse_depth_sigma = 0.04;
   double max_depth_m = 10.0;
 
   template <class Self, class Visitor>

@@ -153,8 +153,14 @@ double learnt_readout(const LearningCase& c) {
 
 TEST(ReadoutEstimator, LearnsTheReadoutOfAMovingCamera) {
   for (const double truth : {0.005, 0.015, 0.03}) {
-    EXPECT_NEAR(learnt_readout({.true_readout_s = truth}), truth, 1e-3);
+    const ShutterConfig any{.min_readout_s = 0};
+    EXPECT_NEAR(learnt_readout({.true_readout_s = truth, .config = any}), truth, 1e-3);
   }
+}
+
+TEST(ReadoutEstimator, TakesAShortReadoutForAGlobalShutter) {
+  EXPECT_EQ(learnt_readout({.true_readout_s = 0.008}), 0.0);
+  EXPECT_NEAR(learnt_readout({.true_readout_s = 0.012}), 0.012, 1e-3);
 }
 
 TEST(ReadoutEstimator, FindsAGlobalShutter) {
