@@ -16,11 +16,16 @@ double uniform(std::mt19937& rng, double low, double high) {
   return low + (high - low) * static_cast<double>(rng()) / 4294967296.0;
 }
 
-Eigen::Vector3d point_on_box(const Eigen::Vector3d& half_size, std::mt19937& rng) {
-  Eigen::Vector3d p;
-  for (int axis = 0; axis < 3; ++axis) p[axis] = uniform(rng, -half_size[axis], half_size[axis]);
+// Half of the points on the box, half inside of it but not near its middle.
+Eigen::Vector3d random_place(const Eigen::Vector3d& half_size, std::mt19937& rng) {
+  const bool inside = rng() % 2U == 0U;
   const auto wall = static_cast<int>(rng() % 3U);
-  p[wall] = (rng() % 2U == 0U ? -1.0 : 1.0) * half_size[wall];
+  const double side = rng() % 2U == 0U ? -1.0 : 1.0;
+  Eigen::Vector3d p;
+  do {
+    for (int axis = 0; axis < 3; ++axis) p[axis] = uniform(rng, -half_size[axis], half_size[axis]);
+  } while (inside && p.norm() < 1.2);
+  if (!inside) p[wall] = side * half_size[wall];
   return p;
 }
 
@@ -66,8 +71,11 @@ SimulatedWorld::SimulatedWorld(const Config& config, const CameraModel& camera) 
   std::mt19937 rng(config.seed);
   for (int i = 0; i < config.points; ++i) {
     WorldPoint point;
-    point.position = point_on_box(config.half_size_m, rng);
+    point.position = random_place(config.half_size_m, rng);
     point.descriptor = random_descriptor(rng);
+    if (config.kinds > 0 && i >= config.kinds) {
+      point.descriptor = points_[static_cast<std::size_t>(i % config.kinds)].descriptor;
+    }
     point.angle_deg = static_cast<float>(uniform(rng, 0, 360));
     // From a standing camera in the middle all levels occur.
     point.base_distance_m = point.position.norm() * uniform(rng, 1.2, 2.5);

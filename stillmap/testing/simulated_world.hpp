@@ -40,13 +40,15 @@ struct Observed {
 /// Pose of the camera in the world at a time in seconds.
 using CameraPath = std::function<Eigen::Isometry3d(double)>;
 
-/// Random points on the walls, floor and ceiling of a box, each with a descriptor of its own, and a
-/// camera that sees them without images. Nothing hides anything.
+/// Random points on the walls, floor and ceiling of a box and inside of it (at least 1.2 m from its
+/// middle), each with a descriptor of its own, and a camera that sees them without images. Nothing
+/// hides anything.
 class SimulatedWorld {
  public:
   struct Config {
     Eigen::Vector3d half_size_m{2.5, 1.5, 3.0};  ///< of the box, whose middle is the origin
     int points = 5000;
+    int kinds = 0;  ///< different corners; points of one kind look alike. 0 = each its own
     std::uint32_t seed = 1;
   };
 

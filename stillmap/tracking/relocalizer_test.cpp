@@ -119,6 +119,16 @@ TEST(Relocalizer, IsTheSameBitsForASeed) {
   EXPECT_TRUE(seed_matters);
 }
 
+TEST(Relocalizer, BeginsAtTheAnchorOfADroppedReference) {
+  const SimulatedWorld world({}, simulated_camera());
+  SimulatedMap simulated = map_all_round(world);
+  simulated.map.remove_keyframe(KeyframeId(5), KeyframeId(6));
+  std::mt19937 rng(5);
+  const Observed seen = world.observe(yawed(175), kNoise, rng);
+  const Relocalizer relocalizer = make_relocalizer(world, {.candidates = 3});
+  EXPECT_TRUE(relocalizer.find(FrameId(0), seen.features, simulated.map, KeyframeId(5)));
+}
+
 // Places that share nothing: key frame k stands at the origin of a world of its own.
 struct Places {
   std::vector<SimulatedWorld> worlds;

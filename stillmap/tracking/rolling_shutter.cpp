@@ -13,6 +13,9 @@ namespace {
 // What is known before the first frame: within 10 ms of the camera's stated readout.
 constexpr double kPriorSigma_s = 0.01;
 
+// A frame that could not tell the readout this well by itself has moved too little to count.
+constexpr double kUsefulSigma_s = 0.02;
+
 }  // namespace
 
 Eigen::Vector3d CameraVelocity::of_point(const Eigen::Vector3d& p_camera) const {
@@ -80,12 +83,12 @@ void ReadoutEstimator::update(const Eigen::Isometry3d& T_camera_world,
   const Vector6d eliminated = H.ldlt().solve(cross);
   information -= cross.dot(eliminated);
   gradient -= g.dot(eliminated);
-  if (!(information > 0)) return;
-  // The residuals belong to the readout that was corrected with; the estimate may differ from it.
-  gradient += information * (estimate_s_ - readout_s());
   // What was learnt in motion is not forgotten while the camera stands: the little "motion" that
   // noise makes there tells nothing and would pull the estimate to zero.
-  information_ = std::max(information_, config_.memory * information_ + information);
+  if (!(information * kUsefulSigma_s * kUsefulSigma_s > 1)) return;
+  // The residuals belong to the readout that was corrected with; the estimate may differ from it.
+  gradient += information * (estimate_s_ - readout_s());
+  information_ = config_.memory * information_ + information;
   estimate_s_ = std::clamp(estimate_s_ - gradient / information_, 0.0, config_.max_readout_s);
 }
 

@@ -165,6 +165,29 @@ TEST(Tracker, StandsFortyPercentOfWrongDescriptors) {
   EXPECT_NEAR(normalized, 6.0, 2.0);
 }
 
+TEST(Tracker, FollowsAPatternWhoseCornersLookAlike) {
+  // Some 15 of the corners in view look like each: appearance alone finds nothing, only the last
+  // frame says where each is.
+  const SimulatedWorld world({.kinds = 20}, simulated_camera());
+  std::mt19937 rng(2);
+  const Observed first = world.observe(path(0), kNoise, rng);
+  SimulatedMap simulated(world);
+  add_true_keyframe(simulated, world, path(0), first);
+  Tracker tracker = make_tracker();
+  RgbdFrame frame;
+  (void)tracker.start(frame, first.features);
+  tracker.set_reference(KeyframeId(0), simulated.map);
+  for (std::uint32_t k = 1; k <= 10; ++k) {
+    frame.id = FrameId(k);
+    frame.stamp.seconds = k * kFrameInterval_s;
+    const Eigen::Isometry3d truth = path(frame.stamp.seconds);
+    const TrackedFrame tracked =
+        tracker.track(frame, world.observe(truth, kNoise, rng).features, simulated.map);
+    ASSERT_EQ(tracked.status, TrackingStatus::kTracked) << k;
+    EXPECT_LT((tracked.T_world_camera.translation() - truth.translation()).norm(), 0.02);
+  }
+}
+
 TEST(Tracker, StandsThirtyPercentOfMatchesThatMoved) {
   Walk walk(path, without_calibration());
   for (int k = 1; k <= 60; ++k) {
