@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Another project that uses the installed stillmap: something of its lowest module and of a higher
-// one, whose private libraries have to be found too.
+// Another project that uses the installed stillmap: something of its lowest module, of one whose
+// private libraries have to be found too, and of the top.
 #include <fmt/format.h>
 
 #include "stillmap/config/config_io.hpp"
 #include "stillmap/core/camera.hpp"
 #include "stillmap/core/error.hpp"
+#include "stillmap/system/system.hpp"
 
 namespace {
 
@@ -23,6 +24,8 @@ struct Settings {
 int main() {
   const stillmap::CameraModel camera = stillmap::builtin_camera("tum_fr3");
   fmt::print("camera {}: {} x {}\n", camera.name, camera.width_px, camera.height_px);
+  stillmap::System slam({}, camera, 2);
+  if (!slam.finish().trajectory.empty()) return 1;
   Settings settings;
   fmt::print("{}", stillmap::dump_yaml(stillmap::list_fields(settings)));
   try {
