@@ -9,9 +9,9 @@
 namespace stillmap {
 
 /// Reads a camera file: a YAML map with `width height fx fy cx cy`, and where they differ from no
-/// distortion and TUM's depth, `name k1 k2 p1 p2 k3 depth_factor readout_s`. Throws Error with file and line
-/// for an unknown, missing or repeated key, for what is not a finite number, and for sizes, focal
-/// lengths or a depth factor that are not positive (sizes: at most 8192).
+/// distortion and TUM's depth, `name k1 k2 p1 p2 k3 depth_factor readout_s`. Throws Error with file
+/// and line for an unknown, missing or repeated key, for what is not a finite number, and for
+/// sizes, focal lengths or a depth factor that are not positive (sizes: at most 8192).
 [[nodiscard]] CameraModel read_camera_yaml(const std::filesystem::path& path);
 
 /// The camera file of a camera: read_camera_yaml gives back the very same numbers.

@@ -37,7 +37,9 @@ ColorImage read_color(const std::filesystem::path& path) {
 DepthImage read_depth(const std::filesystem::path& path, double depth_factor) {
   STILLMAP_CHECK(depth_factor > 0.0);
   const std::string bytes = read_image_file(path);
-  if (!is_png(bytes)) throw DamagedImage("{}: not a PNG, expected a 16-bit depth PNG", path.string());
+  if (!is_png(bytes)) {
+    throw DamagedImage("{}: not a PNG, expected a 16-bit depth PNG", path.string());
+  }
   const cv::Mat1w raw(decode_png(bytes, PngKind::kGray16, path.string()));
   cv::Mat1f metres(raw.size());
   const float factor = static_cast<float>(depth_factor);

@@ -11,8 +11,8 @@
 
 namespace stillmap {
 
-/// An image file that is missing, truncated or damaged, as a disk or a recorder may leave one; a good
-/// image of the wrong kind or size is a plain Error.
+/// An image file that is missing, truncated or damaged, as a disk or a recorder may leave one; a
+/// good image of the wrong kind or size is a plain Error.
 class DamagedImage : public Error {
  public:
   using Error::Error;
@@ -20,7 +20,8 @@ class DamagedImage : public Error {
 
 // Readers go by a file's content, never by its name. They throw Error, naming the file, what it
 // holds and what was expected: DamagedImage for one that is missing, truncated or damaged, a plain
-// Error for one of another kind or of more than 8192 pixels a side. All are stateless and may run in any number of threads.
+// Error for one of another kind or of more than 8192 pixels a side. All are stateless and may run
+// in any number of threads.
 
 /// A PNG (8-bit gray or RGB, transparency dropped) or JPEG, as RGB.
 [[nodiscard]] ColorImage read_color(const std::filesystem::path& path);
