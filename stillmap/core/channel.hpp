@@ -50,9 +50,11 @@ class Channel {
   void close() { finish(nullptr); }
   void fail(std::exception_ptr failure) { finish(std::move(failure)); }
 
+  /// What is still in the queue is dropped.
   void cancel() {
     const std::lock_guard lock(mutex_);
     cancelled_ = true;
+    queue_.clear();
     changed_.notify_all();
   }
 

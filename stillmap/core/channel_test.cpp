@@ -38,5 +38,13 @@ TEST(Channel, CancelReleasesAWaitingProducer) {
   EXPECT_FALSE(pushed);
 }
 
+TEST(Channel, CancelDropsWhatIsStillQueued) {
+  Channel<int> channel(4);
+  ASSERT_TRUE(channel.push(1));
+  channel.cancel();
+  channel.close();
+  EXPECT_EQ(channel.pop(), std::nullopt);
+}
+
 }  // namespace
 }  // namespace stillmap

@@ -31,7 +31,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 std::string name_hint(std::string_view misspelt, std::span<const std::string> known) {
   const auto nearest = std::ranges::min_element(
       known, {}, [&](const std::string& name) { return edit_distance(misspelt, name); });
-  if (edit_distance(misspelt, *nearest) <= std::max<std::size_t>(1, nearest->size() / 3)) {
+  if (edit_distance(misspelt, *nearest) <= std::max<std::size_t>(1, (nearest->size() + 1) / 3)) {
     return fmt::format("did you mean '{}'?", *nearest);
   }
   return fmt::format("known: {}", fmt::join(known, ", "));

@@ -13,6 +13,7 @@ const std::vector<std::string> kNames = {"tracking.features", "cloud.voxel_size_
 TEST(NameHint, SuggestsACloseName) {
   EXPECT_EQ(name_hint("tracking.feature", kNames), "did you mean 'tracking.features'?");
   EXPECT_EQ(name_hint("cloud.voxelsize_m", kNames), "did you mean 'cloud.voxel_size_m'?");
+  EXPECT_EQ(name_hint("emtpy", std::vector<std::string>{"loop", "empty"}), "did you mean 'empty'?");
   EXPECT_EQ(name_hint("sead", kNames), "did you mean 'seed'?");
 }
 
