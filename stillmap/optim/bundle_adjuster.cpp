@@ -17,6 +17,11 @@ constexpr std::uint32_t kHeld = ~std::uint32_t{0};
 constexpr double kConverged = 1e-5;  // relative decrease of the cost
 constexpr double kMaxDamping = 1e8;
 
+// Where a free camera's six numbers begin in the reduced system.
+Eigen::Index offset_of(std::uint32_t slot) {
+  return 6 * static_cast<Eigen::Index>(slot);
+}
+
 /// One solve: the current estimate, its linearisation, and steps from it.
 class Solver {
  public:
@@ -147,10 +152,10 @@ void Solver::eliminate_points(double damping,
     H_point_inverse[point] = H.inverse();
     for (const Term& row : terms) {
       const Matrix63d Y = W_[row.observation] * H_point_inverse[point];
-      b.segment<6>(6 * row.slot).noalias() += Y * g_point_[point];
+      b.segment<6>(offset_of(row.slot)).noalias() += Y * g_point_[point];
       for (const Term& column : terms) {
         if (column.slot > row.slot) continue;  // the lower triangle is enough
-        S.block<6, 6>(6 * row.slot, 6 * column.slot).noalias() -=
+        S.block<6, 6>(offset_of(row.slot), offset_of(column.slot)).noalias() -=
             Y * W_[column.observation].transpose();
       }
     }
@@ -158,15 +163,15 @@ void Solver::eliminate_points(double damping,
 }
 
 Solver::Step Solver::solve(double damping) const {
-  const Eigen::Index size = 6 * static_cast<Eigen::Index>(free_cameras_);
+  const Eigen::Index size = offset_of(free_cameras_);
   Eigen::MatrixXd S = Eigen::MatrixXd::Zero(size, size);
   Eigen::VectorXd b(size);
   for (std::uint32_t c = 0; c < free_cameras_; ++c) {
     Matrix6d H = H_camera_[c];
     H.diagonal() += damping * H.diagonal();
     H.diagonal().array() += 1e-9;
-    S.block<6, 6>(6 * c, 6 * c) = H;
-    b.segment<6>(6 * c) = -g_camera_[c];
+    S.block<6, 6>(offset_of(c), offset_of(c)) = H;
+    b.segment<6>(offset_of(c)) = -g_camera_[c];
   }
   std::vector<Eigen::Matrix3d> H_point_inverse(problem_.points.size(), Eigen::Matrix3d::Zero());
   eliminate_points(damping, S, b, H_point_inverse);
@@ -179,7 +184,7 @@ Solver::Step Solver::solve(double damping) const {
     const BundleObservation& o = problem_.observations[i];
     const std::uint32_t slot = slot_[o.camera];
     if (used_[i] == 0 || slot == kHeld) continue;
-    step.points[o.point].noalias() -= W_[i].transpose() * step.cameras.segment<6>(6 * slot);
+    step.points[o.point].noalias() -= W_[i].transpose() * step.cameras.segment<6>(offset_of(slot));
   }
   for (std::size_t p = 0; p < step.points.size(); ++p) {
     step.points[p] = H_point_inverse[p] * step.points[p];
@@ -197,7 +202,7 @@ int Solver::minimize(int iterations) {
     std::vector<Eigen::Isometry3d> poses = problem_.T_camera_world;
     for (std::size_t c = 0; c < poses.size(); ++c) {
       if (slot_[c] == kHeld) continue;
-      poses[c] = perturb_left(poses[c], step.cameras.segment<6>(6 * slot_[c]));
+      poses[c] = perturb_left(poses[c], step.cameras.segment<6>(offset_of(slot_[c])));
     }
     std::vector<Eigen::Vector3d> points = problem_.points;
     for (std::size_t p = 0; p < points.size(); ++p) points[p] += step.points[p];

@@ -71,9 +71,9 @@ inline constexpr double kChi2Bound3 = 7.815;
 /// Huber's loss of a squared norm, and the weight that makes least squares follow it.
 struct Huber {
   double cost;
-  double weight;
+  double weight = 1;
 
-  Huber(double squared_norm, double bound_squared) : cost(squared_norm), weight(1) {
+  Huber(double squared_norm, double bound_squared) : cost(squared_norm) {
     if (squared_norm <= bound_squared) return;
     const double norm = std::sqrt(squared_norm), bound = std::sqrt(bound_squared);
     cost = 2 * bound * norm - bound_squared;

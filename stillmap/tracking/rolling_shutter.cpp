@@ -11,7 +11,7 @@ namespace stillmap {
 namespace {
 
 // What is known before the first frame: within 10 ms of the camera's stated readout.
-constexpr double kPriorSigma_s = 0.01;
+constexpr double kPriorSigma = 0.01;
 
 // A frame that could not tell the readout this well by itself has moved too little to count.
 constexpr double kUsefulSigma_s = 0.02;
@@ -51,7 +51,7 @@ ReadoutEstimator::ReadoutEstimator(const ShutterConfig& config, const CameraMode
     : config_(config),
       camera_(camera),
       estimate_s_(std::min(camera.readout_s, config.max_readout_s)),
-      information_(1.0 / (kPriorSigma_s * kPriorSigma_s)) {}
+      information_(1.0 / (kPriorSigma * kPriorSigma)) {}
 
 void ReadoutEstimator::update(const Eigen::Isometry3d& T_camera_world,
                               const CameraVelocity& velocity,
