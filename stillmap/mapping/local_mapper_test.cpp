@@ -116,6 +116,17 @@ Purity purity_of(const SimulatedMap& simulated, const std::vector<std::uint32_t>
   return purity;
 }
 
+// Landmarks that no key frame knows the depth of.
+int without_depth(const Map& map) {
+  int count = 0;
+  for (const LandmarkId id : map.landmark_ids()) {
+    count += std::ranges::none_of(map.landmark(id).observations, [&](const Observation& o) {
+      return map.keyframe(o.keyframe).features->depth_m[o.feature] > 0;
+    });
+  }
+  return count;
+}
+
 TEST(MapLocally, GivesAConsistentAndBetterMap) {
   SimulatedMap simulated = rough_map(8);
   (void)simulated.map.take_changes();
@@ -123,6 +134,7 @@ TEST(MapLocally, GivesAConsistentAndBetterMap) {
   const double before_m = keyframe_rmse_m(simulated);
   const Purity before = purity_of(simulated, points);
   ASSERT_GT(before.duplicates, 50);
+  ASSERT_EQ(without_depth(simulated.map), 0);
   // Twice: some are fused only after the first adjustment has brought them together.
   for (int round = 0; round < 2; ++round) {
     const MappingConfig config;
@@ -135,6 +147,7 @@ TEST(MapLocally, GivesAConsistentAndBetterMap) {
   const Purity after = purity_of(simulated, points);
   EXPECT_LT(after.duplicates, before.duplicates / 4);
   EXPECT_EQ(after.mixed, 0);
+  EXPECT_GT(without_depth(simulated.map), 3);  // triangulated
 }
 
 TEST(MapLocally, IsTheSameForTheSameWindow) {

@@ -39,8 +39,9 @@ class JobLedger {
   [[nodiscard]] std::vector<Result> collect_due(std::int64_t frame) {
     std::vector<Result> results;
     while (!jobs_.empty() && jobs_.front().due_frame <= frame) {
-      results.push_back(jobs_.front().result.get());
-      jobs_.pop_front();
+      std::future<Result> result = std::move(jobs_.front().result);
+      jobs_.pop_front();  // first, for get() may throw
+      results.push_back(result.get());
     }
     return results;
   }

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/system/system.hpp"
+
+#include <gtest/gtest.h>
+
+#include "stillmap/eval/ate.hpp"
+#include "stillmap/synth/sequence.hpp"
+
+namespace stillmap {
+namespace {
+
+constexpr std::uint32_t kFrames = 90;
+
+// A room seen by a hand-held camera, as a Kinect of a quarter of the size sees it.
+const SyntheticSequence& sequence() {
+  static const SyntheticSequence kSequence = [] {
+    SyntheticOptions options;
+    options.camera = synthetic_camera(320, 240);
+    options.frames = kFrames;
+    return SyntheticSequence(options);
+  }();
+  return kSequence;
+}
+
+// Rendered once.
+const std::vector<FramePtr>& frames() {
+  static const std::vector<FramePtr> kRendered = [] {
+    std::vector<FramePtr> rendered;
+    for (std::uint32_t k = 0; k < kFrames; ++k) rendered.push_back(sequence().frame(FrameId(k)));
+    return rendered;
+  }();
+  return kRendered;
+}
+
+// The frame with nothing to see on it.
+FramePtr darkened(const FramePtr& frame) {
+  RgbdFrame dark = *frame;
+  dark.color = ColorImage(cv::Mat3b(240, 320, cv::Vec3b(0, 0, 0)));
+  dark.gray = GrayImage(cv::Mat1b(240, 320, std::uint8_t{0}));
+  dark.depth = DepthImage(cv::Mat1f(240, 320, 0.0F));
+  return std::make_shared<const RgbdFrame>(std::move(dark));
+}
+
+struct FinishedRun {
+  std::vector<FrameResult> frames;
+  RunResult result;
+};
+
+// Runs the frames; those from `dark_begin` to `dark_end` - 1 without light.
+FinishedRun run(int threads, std::uint32_t dark_begin = kFrames, std::uint32_t dark_end = kFrames) {
+  System system({}, synthetic_camera(320, 240), threads);
+  FinishedRun done;
+  for (std::uint32_t k = 0; k < kFrames; ++k) {
+    const bool dark = k >= dark_begin && k < dark_end;
+    done.frames.push_back(system.process(dark ? darkened(frames()[k]) : frames()[k]));
+    system.map().check_consistency();
+  }
+  done.result = system.finish();
+  system.map().check_consistency();
+  return done;
+}
+
+void expect_equal(const Trajectory& a, const Trajectory& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].stamp.text, b[i].stamp.text);
+    EXPECT_EQ(a[i].T_world_camera.matrix(), b[i].T_world_camera.matrix()) << i;
+  }
+}
+
+TEST(System, FollowsARenderedCameraAndMapsItsRoom) {
+  const FinishedRun done = run(1);
+  ASSERT_EQ(done.result.trajectory.size(), kFrames);
+  EXPECT_FALSE(done.result.lost_at_end);
+  EXPECT_EQ(done.frames[0].tracked.status, TrackingStatus::kInitialized);
+  EXPECT_TRUE(done.frames[0].is_keyframe);
+  const std::optional<AteResult> ate =
+      absolute_trajectory_error(sequence().ground_truth(), done.result.trajectory);
+  ASSERT_TRUE(ate);
+  EXPECT_EQ(ate->pairs.size(), kFrames);
+  EXPECT_LT(ate->translation_m.rmse, 0.005);
+  EXPECT_GT(done.result.keyframes.size(), 2U);
+  EXPECT_LT(done.result.keyframes.size(), kFrames / 3);
+  EXPECT_GT(done.result.map.size(), 10000U);
+}
+
+TEST(System, StampsAndWorldAreThoseOfTheFramesAndTheFirstCamera) {
+  const FinishedRun done = run(1);
+  EXPECT_TRUE(done.frames[0].tracked.T_world_camera.isApprox(Eigen::Isometry3d::Identity(), 0));
+  EXPECT_TRUE(
+      done.result.trajectory[0].T_world_camera.isApprox(Eigen::Isometry3d::Identity(), 1e-12));
+  const Trajectory expected = sequence().ground_truth();
+  for (std::uint32_t k = 0; k < kFrames; ++k) {
+    EXPECT_EQ(done.result.trajectory[k].stamp.text, expected[k].stamp.text);
+  }
+}
+
+TEST(System, GivesTheSameBitsWithAnyNumberOfThreads) {
+  const FinishedRun one = run(1), two = run(2), again = run(2);
+  for (const FinishedRun* other : {&two, &again}) {
+    expect_equal(one.result.trajectory, other->result.trajectory);
+    expect_equal(one.result.keyframes, other->result.keyframes);
+    EXPECT_EQ(one.result.map.positions, other->result.map.positions);
+    EXPECT_EQ(one.result.map.colors, other->result.map.colors);
+    for (std::uint32_t k = 0; k < kFrames; ++k) {
+      EXPECT_EQ(one.frames[k].is_keyframe, other->frames[k].is_keyframe);
+      EXPECT_EQ(one.frames[k].tracked.inliers, other->frames[k].tracked.inliers);
+      EXPECT_EQ(one.frames[k].tracked.T_world_camera.matrix(),
+                other->frames[k].tracked.T_world_camera.matrix());
+    }
+  }
+}
+
+TEST(System, MarksDarkFramesAsLostAndFindsBack) {
+  const FinishedRun done = run(2, 50, 60);
+  for (std::uint32_t k = 0; k < kFrames; ++k) {
+    const bool dark = k >= 50 && k < 60;
+    EXPECT_EQ(has_pose(done.frames[k].tracked), !dark) << k;
+  }
+  EXPECT_EQ(done.frames[60].tracked.status, TrackingStatus::kRelocalized);
+  EXPECT_EQ(done.result.trajectory.size(), kFrames - 10);
+  EXPECT_FALSE(done.result.lost_at_end);
+  const std::optional<AteResult> ate =
+      absolute_trajectory_error(sequence().ground_truth(), done.result.trajectory);
+  ASSERT_TRUE(ate);
+  EXPECT_LT(ate->translation_m.rmse, 0.008);
+}
+
+TEST(System, BeginsWithTheFirstFrameThatShowsSomething) {
+  const FinishedRun done = run(1, 0, 5);
+  EXPECT_EQ(done.frames[4].tracked.status, TrackingStatus::kLost);
+  EXPECT_EQ(done.frames[5].tracked.status, TrackingStatus::kInitialized);
+  EXPECT_EQ(done.result.trajectory.size(), kFrames - 5);
+}
+
+TEST(System, SaysThatItWasLostAtTheEnd) {
+  const FinishedRun done = run(2, kFrames - 3, kFrames);
+  EXPECT_TRUE(done.result.lost_at_end);
+  EXPECT_EQ(done.result.trajectory.size(), kFrames - 3);
+}
+
+TEST(System, OfNothingButDarknessGivesNothing) {
+  const FinishedRun done = run(1, 0, kFrames);
+  EXPECT_TRUE(done.result.lost_at_end);
+  EXPECT_TRUE(done.result.trajectory.empty());
+  EXPECT_TRUE(done.result.keyframes.empty());
+  EXPECT_TRUE(done.result.map.empty());
+}
+
+TEST(System, CanBeGivenUpWithJobsPending) {
+  for (int frames_done = 1; frames_done < 8; ++frames_done) {
+    System system({}, synthetic_camera(320, 240), 2);
+    for (int k = 0; k < frames_done; ++k) {
+      (void)system.process(frames()[static_cast<std::size_t>(k)]);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace stillmap
