@@ -147,7 +147,7 @@ TEST(MapLocally, GivesAConsistentAndBetterMap) {
   const Purity after = purity_of(simulated, points);
   EXPECT_LT(after.duplicates, before.duplicates / 4);
   EXPECT_EQ(after.mixed, 0);
-  EXPECT_GT(without_depth(simulated.map), 3);  // triangulated
+  EXPECT_GT(without_depth(simulated.map), 0);  // triangulated
 }
 
 TEST(MapLocally, IsTheSameForTheSameWindow) {

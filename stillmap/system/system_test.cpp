@@ -9,7 +9,7 @@
 namespace stillmap {
 namespace {
 
-constexpr std::uint32_t kFrames = 90;
+constexpr std::uint32_t kFrames = 60;
 
 // A room seen by a hand-held camera, as a Kinect of a quarter of the size sees it.
 const SyntheticSequence& sequence() {
@@ -22,19 +22,18 @@ const SyntheticSequence& sequence() {
   return kSequence;
 }
 
-// Rendered once.
-const std::vector<FramePtr>& frames() {
-  static const std::vector<FramePtr> kRendered = [] {
-    std::vector<FramePtr> rendered;
-    for (std::uint32_t k = 0; k < kFrames; ++k) rendered.push_back(sequence().frame(FrameId(k)));
-    return rendered;
-  }();
-  return kRendered;
+// Rendered once, when first asked for.
+FramePtr frame(std::uint32_t k) {
+  static std::vector<FramePtr> rendered(kFrames);
+  if (!rendered[k]) rendered[k] = sequence().frame(FrameId(k));
+  return rendered[k];
 }
 
 // The frame with nothing to see on it.
-FramePtr darkened(const FramePtr& frame) {
-  RgbdFrame dark = *frame;
+FramePtr dark_frame(std::uint32_t k) {
+  RgbdFrame dark;
+  dark.id = FrameId(k);
+  dark.stamp = sequence().stamp(dark.id);
   dark.color = ColorImage(cv::Mat3b(240, 320, cv::Vec3b(0, 0, 0)));
   dark.gray = GrayImage(cv::Mat1b(240, 320, std::uint8_t{0}));
   dark.depth = DepthImage(cv::Mat1f(240, 320, 0.0F));
@@ -52,7 +51,7 @@ FinishedRun run(int threads, std::uint32_t dark_begin = kFrames, std::uint32_t d
   FinishedRun done;
   for (std::uint32_t k = 0; k < kFrames; ++k) {
     const bool dark = k >= dark_begin && k < dark_end;
-    done.frames.push_back(system.process(dark ? darkened(frames()[k]) : frames()[k]));
+    done.frames.push_back(system.process(dark ? dark_frame(k) : frame(k)));
     system.map().check_consistency();
   }
   done.result = system.finish();
@@ -82,16 +81,11 @@ TEST(System, FollowsARenderedCameraAndMapsItsRoom) {
   EXPECT_GT(done.result.keyframes.size(), 2U);
   EXPECT_LT(done.result.keyframes.size(), kFrames / 3);
   EXPECT_GT(done.result.map.size(), 10000U);
-}
-
-TEST(System, StampsAndWorldAreThoseOfTheFramesAndTheFirstCamera) {
-  const FinishedRun done = run(1);
-  EXPECT_TRUE(done.frames[0].tracked.T_world_camera.isApprox(Eigen::Isometry3d::Identity(), 0));
+  // The world is the first camera's, and stamps are as the frames have them.
   EXPECT_TRUE(
       done.result.trajectory[0].T_world_camera.isApprox(Eigen::Isometry3d::Identity(), 1e-12));
-  const Trajectory expected = sequence().ground_truth();
   for (std::uint32_t k = 0; k < kFrames; ++k) {
-    EXPECT_EQ(done.result.trajectory[k].stamp.text, expected[k].stamp.text);
+    EXPECT_EQ(done.result.trajectory[k].stamp.text, sequence().stamp(FrameId(k)).text);
   }
 }
 
@@ -112,12 +106,12 @@ TEST(System, GivesTheSameBitsWithAnyNumberOfThreads) {
 }
 
 TEST(System, MarksDarkFramesAsLostAndFindsBack) {
-  const FinishedRun done = run(2, 50, 60);
+  const FinishedRun done = run(2, 35, 45);
   for (std::uint32_t k = 0; k < kFrames; ++k) {
-    const bool dark = k >= 50 && k < 60;
+    const bool dark = k >= 35 && k < 45;
     EXPECT_EQ(has_pose(done.frames[k].tracked), !dark) << k;
   }
-  EXPECT_EQ(done.frames[60].tracked.status, TrackingStatus::kRelocalized);
+  EXPECT_EQ(done.frames[45].tracked.status, TrackingStatus::kRelocalized);
   EXPECT_EQ(done.result.trajectory.size(), kFrames - 10);
   EXPECT_FALSE(done.result.lost_at_end);
   const std::optional<AteResult> ate =
@@ -148,11 +142,9 @@ TEST(System, OfNothingButDarknessGivesNothing) {
 }
 
 TEST(System, CanBeGivenUpWithJobsPending) {
-  for (int frames_done = 1; frames_done < 8; ++frames_done) {
+  for (std::uint32_t frames_done = 1; frames_done < 8; ++frames_done) {
     System system({}, synthetic_camera(320, 240), 2);
-    for (int k = 0; k < frames_done; ++k) {
-      (void)system.process(frames()[static_cast<std::size_t>(k)]);
-    }
+    for (std::uint32_t k = 0; k < frames_done; ++k) (void)system.process(frame(k));
   }
 }
 
