@@ -46,9 +46,7 @@ bool agrees(const CameraModel& camera,
             std::uint32_t feature,
             const Eigen::Vector3d& p_world) {
   const Eigen::Vector3d p_camera = keyframe.T_world_camera.inverse() * p_world;
-  if (p_camera.z() < kMinPointDepth) return false;
-  const PointMeasurement m = measure(*keyframe.features, feature);
-  return reprojection_residual(camera, m, p_camera).squaredNorm() <= chi2_bound(m);
+  return agrees_with(camera, measure(*keyframe.features, feature), p_camera);
 }
 
 // Fundamental matrix: p_b^T F p_a = 0 for ideal pixels of the two views.

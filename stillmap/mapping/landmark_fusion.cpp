@@ -16,11 +16,6 @@ bool seen_by(const Landmark& landmark, KeyframeId keyframe) {
   return std::ranges::binary_search(landmark.observations, keyframe, {}, &Observation::keyframe);
 }
 
-bool agrees(const CameraModel& camera, const PointMeasurement& m, const Eigen::Vector3d& p_camera) {
-  return p_camera.z() >= kMinPointDepth &&
-         reprojection_residual(camera, m, p_camera).squaredNorm() <= chi2_bound(m);
-}
-
 }  // namespace
 
 int fuse_landmarks(Map& map,
@@ -49,7 +44,7 @@ int fuse_landmarks(Map& map,
     const Landmark* landmark = map.find(id);  // an earlier merge may have taken it
     if (landmark == nullptr || seen_by(*landmark, keyframe)) continue;
     const Eigen::Vector3d p_camera = T_camera_world * landmark->p_world;
-    if (!agrees(camera, measure(*features, match.feature), p_camera)) continue;
+    if (!agrees_with(camera, measure(*features, match.feature), p_camera)) continue;
     const LandmarkId present = map.keyframe(keyframe).landmarks[match.feature];
     if (!present.valid()) {
       map.add_observation(id, {keyframe, match.feature});

@@ -84,4 +84,12 @@ struct Huber {
 /// Nearer points cannot be seen; the residual is undefined at zero depth.
 inline constexpr double kMinPointDepth = 0.05;
 
+/// The point is before the camera and its residual within the 95 % bound.
+[[nodiscard]] inline bool agrees_with(const CameraModel& camera,
+                                      const PointMeasurement& m,
+                                      const Eigen::Vector3d& p_camera) {
+  return p_camera.z() >= kMinPointDepth &&
+         reprojection_residual(camera, m, p_camera).squaredNorm() <= chi2_bound(m);
+}
+
 }  // namespace stillmap
