@@ -2,7 +2,7 @@
 # stillmap_module(NAME core SOURCES a.cpp HEADERS a.hpp USES other PRIVATE_LIBS lib PUBLIC_LIBS lib TESTS a_test.cpp
 #   TEST_USES module TEST_LIBS lib)
 # One static library a module, stillmap::NAME, with one test program, NAME_test, beside it. A module
-# that only tests use is declared stillmap_module(TEST_ONLY NAME ...): it is not installed.
+# that is no part of the library is declared stillmap_module(NOT_INSTALLED NAME ...).
 
 add_library(stillmap_options INTERFACE)
 target_compile_features(stillmap_options INTERFACE cxx_std_20)
@@ -33,7 +33,7 @@ function(stillmap_tests NAME)
 endfunction()
 
 function(stillmap_module)
-  cmake_parse_arguments(ARG "TEST_ONLY" "NAME" "SOURCES;HEADERS;USES;PUBLIC_LIBS;PRIVATE_LIBS;TESTS;TEST_USES;TEST_LIBS" ${ARGN})
+  cmake_parse_arguments(ARG "NOT_INSTALLED" "NAME" "SOURCES;HEADERS;USES;PUBLIC_LIBS;PRIVATE_LIBS;TESTS;TEST_USES;TEST_LIBS" ${ARGN})
   set(target stillmap_${ARG_NAME})
   add_library(${target} STATIC ${ARG_SOURCES})
   add_library(stillmap::${ARG_NAME} ALIAS ${target})
@@ -42,7 +42,7 @@ function(stillmap_module)
   list(TRANSFORM ARG_USES PREPEND stillmap::)
   target_link_libraries(${target}
     PUBLIC stillmap_options ${ARG_USES} ${ARG_PUBLIC_LIBS} PRIVATE ${ARG_PRIVATE_LIBS})
-  if(NOT ARG_TEST_ONLY)
+  if(NOT ARG_NOT_INSTALLED)
     install(TARGETS ${target} EXPORT stillmap FILE_SET HEADERS ARCHIVE)
   endif()
   list(TRANSFORM ARG_TEST_USES PREPEND stillmap::)

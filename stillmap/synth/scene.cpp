@@ -3,8 +3,8 @@
 
 #include <numbers>
 
-#include "stillmap/synth/hash_random.hpp"
-#include "stillmap/synth/paint.hpp"
+#include "stillmap/scene/hash_random.hpp"
+#include "stillmap/scene/paint.hpp"
 #include "stillmap/synth/slab.hpp"
 
 namespace stillmap {

@@ -8,7 +8,7 @@
 
 #include <Eigen/Geometry>
 
-#include "stillmap/synth/texture.hpp"
+#include "stillmap/scene/texture.hpp"
 
 namespace stillmap {
 

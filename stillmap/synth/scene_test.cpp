@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "stillmap/synth/hash_random.hpp"
+#include "stillmap/scene/hash_random.hpp"
 
 namespace stillmap {
 namespace {

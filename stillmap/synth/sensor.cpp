@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "stillmap/synth/hash_random.hpp"
+#include "stillmap/scene/hash_random.hpp"
 
 namespace stillmap {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "stillmap/synth/paint.hpp"
+#include "stillmap/scene/paint.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "stillmap/core/error.hpp"
-#include "stillmap/synth/hash_random.hpp"
+#include "stillmap/scene/hash_random.hpp"
 
 namespace stillmap {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "stillmap/synth/texture.hpp"
+#include "stillmap/scene/texture.hpp"
 
 #include <gtest/gtest.h>
 
