@@ -9,8 +9,8 @@ namespace stillmap {
 
 /// An office of 6 x 6 x 2.7 m without people, centred on the world's z axis: walls with posters and
 /// blank stretches, desks with monitors, keyboards, books and mugs, chairs, a shelf, lamps. Its
-/// layout is fixed; `seed` varies what is painted on it. Things that may be moved: "chair_1" to
-/// "chair_3" (ids 10 to 12), at home in front of desks 1 to 3, and the carton "box_1" (id 13).
+/// layout is fixed; `seed` varies what is painted on it. Things that may be moved: "chair_1" and
+/// "chair_2" (ids 10 and 11) at their desks, "chair_3" (12) in the middle, the carton "box_1" (13).
 [[nodiscard]] World make_office(std::uint32_t seed);
 
 }  // namespace stillmap
