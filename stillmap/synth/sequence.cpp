@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <set>
 
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
@@ -19,38 +20,22 @@ std::shared_ptr<const World> furnished_world(const SyntheticOptions& options) {
   return std::make_shared<const World>(std::move(world));
 }
 
-// Below these nobody would say that a thing or a person moves: breathing, swaying.
-constexpr double kStillThing = 0.005;  // m/s
-constexpr double kStillJoint = 0.05;
-
-ObjectMotion thing_motion(const Thing& thing,
-                          const Eigen::Isometry3d& before,
-                          const Eigen::Isometry3d& after,
-                          double duration_s) {
-  // Its farthest corner moves fastest.
-  double fastest = 0;
-  for (const Eigen::Vector3f& corner : thing.mesh.positions) {
-    const Eigen::Vector3d p = corner.cast<double>();
-    fastest = std::max(fastest, (after * p - before * p).norm());
-  }
-  const double speed = (after.translation() - before.translation()).norm() / duration_s;
-  return {thing.id, speed, fastest / duration_s > kStillThing};
+double mean_distance(const std::vector<Eigen::Vector3f>& a, const std::vector<Eigen::Vector3f>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (b[i] - a[i]).norm();
+  return a.empty() ? 0.0 : sum / static_cast<double>(a.size());
 }
 
-ObjectMotion person_motion(const Person& person,
-                           const BodyPose& before,
-                           const BodyPose& after,
-                           double duration_s) {
-  const std::array<Eigen::Isometry3d, kJoints> from = person.body.T_world_joints(before);
-  const std::array<Eigen::Isometry3d, kJoints> to = person.body.T_world_joints(after);
-  double fastest = 0;
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (std::size_t k = 0; k < kJoints; ++k) {
-    const Eigen::Vector3d step = to[k].translation() - from[k].translation();
-    fastest = std::max(fastest, step.norm());
-    mean += step / kJoints;
-  }
-  return {person.id, mean.norm() / duration_s, fastest / duration_s > kStillJoint};
+std::vector<Eigen::Vector3f> moved(const std::vector<Eigen::Vector3f>& points,
+                                   const Eigen::Isometry3d& T) {
+  std::vector<Eigen::Vector3f> result;
+  result.reserve(points.size());
+  for (const Eigen::Vector3f& p : points) result.push_back((T * p.cast<double>()).cast<float>());
+  return result;
+}
+
+bool all_in(const std::vector<Person>& people, const std::set<int>& ids) {
+  return std::ranges::all_of(people, [&](const Person& p) { return ids.contains(p.id); });
 }
 
 }  // namespace
@@ -120,7 +105,7 @@ SyntheticFrame SyntheticSequence::render(FrameId id) const {
   frame.color = measured.color;
   frame.depth = measured.depth;
   cv::cvtColor(measured.color.mat, frame.gray.mat, cv::COLOR_RGB2GRAY);
-  return {std::make_shared<const RgbdFrame>(std::move(frame)), perfect.depth, perfect.ids};
+  return {std::make_shared<const RgbdFrame>(std::move(frame)), perfect};
 }
 
 Trajectory SyntheticSequence::ground_truth() const {
@@ -132,22 +117,43 @@ Trajectory SyntheticSequence::ground_truth() const {
   return trajectory;
 }
 
-std::vector<ObjectMotion> SyntheticSequence::motions(FrameId id) const {
+std::vector<ObjectSpeed> SyntheticSequence::speeds(FrameId id) const {
   const double step = 0.5 / options_.frames_per_second;
   const double from = std::max(0.0, time_s(id) - step), to = time_s(id) + step;
   const WorldState before = choreography_.at(from), after = choreography_.at(to);
-  std::vector<ObjectMotion> motions;
+  std::vector<ObjectSpeed> speeds;
   for (std::size_t i = 0; i < world_->things.size(); ++i) {
     const Thing& thing = world_->things[i];
     if (thing.id == 0) continue;
-    motions.push_back(
-        thing_motion(thing, before.T_world_things[i], after.T_world_things[i], to - from));
+    const double distance = mean_distance(moved(thing.mesh.positions, before.T_world_things[i]),
+                                          moved(thing.mesh.positions, after.T_world_things[i]));
+    speeds.push_back({thing.id, distance / (to - from)});
   }
   for (std::size_t i = 0; i < world_->people.size(); ++i) {
-    motions.push_back(
-        person_motion(world_->people[i], before.people[i], after.people[i], to - from));
+    const Person& person = world_->people[i];
+    const double distance = mean_distance(person.body.posed(before.people[i]).positions,
+                                          person.body.posed(after.people[i]).positions);
+    speeds.push_back({person.id, distance / (to - from)});
   }
-  return motions;
+  return speeds;
+}
+
+std::vector<int> SyntheticSequence::moved_ids() const {
+  std::set<int> moved;
+  const WorldState first = state(FrameId(0));
+  for (std::uint32_t k = 1; k < size(); ++k) {
+    const WorldState now = state(FrameId(k));
+    for (std::size_t i = 0; i < world_->things.size(); ++i) {
+      const bool stays = now.T_world_things[i].matrix() == first.T_world_things[i].matrix();
+      if (!stays) moved.insert(world_->things[i].id);
+    }
+  }
+  for (std::uint32_t k = 0; k < size() && !all_in(world_->people, moved); ++k) {
+    for (const ObjectSpeed& object : speeds(FrameId(k))) {
+      if (object.speed_mps > kMovingSpeedMps) moved.insert(object.id);
+    }
+  }
+  return {moved.begin(), moved.end()};
 }
 
 }  // namespace stillmap

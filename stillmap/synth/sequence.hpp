@@ -12,6 +12,7 @@
 #include "stillmap/scene/choreography.hpp"
 #include "stillmap/synth/camera_path.hpp"
 #include "stillmap/synth/sensor.hpp"
+#include "stillmap/synth/truth.hpp"
 
 namespace stillmap {
 
@@ -33,15 +34,7 @@ struct SyntheticOptions {
 /// A frame as the sensor gives it, and the truth about it.
 struct SyntheticFrame {
   FramePtr frame;
-  DepthImage true_depth;  ///< of the ray through each pixel's centre, without the sensor's faults
-  cv::Mat1b ids;          ///< of what that ray meets; 0 for what cannot move
-};
-
-/// What an object that can move does in one frame.
-struct ObjectMotion {
-  std::uint8_t id = 0;
-  double speed = 0;     ///< m/s; of people, the mean of their joints
-  bool moving = false;  ///< whether any part of it does
+  RenderedImage truth;  ///< without the sensor's faults
 };
 
 /// A sequence in the office of make_office() along a path, with exact truth. Frames are rendered
@@ -72,8 +65,12 @@ class SyntheticSequence {
   /// Where everything is in frame `id`.
   [[nodiscard]] WorldState state(FrameId id) const;
 
-  /// All that can move: things by their order in world(), then people.
-  [[nodiscard]] std::vector<ObjectMotion> motions(FrameId id) const;
+  /// How fast what can move is in frame `id`, as the mean over its corners: things by their order
+  /// in world(), then people.
+  [[nodiscard]] std::vector<ObjectSpeed> speeds(FrameId id) const;
+
+  /// The ids of what moves in any frame, ascending.
+  [[nodiscard]] std::vector<int> moved_ids() const;
 
  private:
   [[nodiscard]] double time_s(FrameId id) const;
