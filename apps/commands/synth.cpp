@@ -68,7 +68,8 @@ DetectionKind detection_kind(const std::string& name) {
   if (name == "none") return DetectionKind::kNone;
   if (name == "perfect") return DetectionKind::kPerfect;
   if (name == "imperfect") return DetectionKind::kImperfect;
-  throw Error("--detections {}: {}", name, name_hint(name, {"none", "perfect", "imperfect"}));
+  const std::vector<std::string> known = {"none", "perfect", "imperfect"};
+  throw Error("--detections {}: {}", name, name_hint(name, known));
 }
 
 // One side of --size. Smaller images show nothing, larger ones are no camera's.
