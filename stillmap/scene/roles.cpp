@@ -210,7 +210,7 @@ Role stroller(const World& office) {
                   {2.6, 1.08, -0.10, radians(-100)},
                   {3.0, 1.12, -0.30, radians(-120), true},
                   {3.9, 1.12, -0.28, radians(-190), true},
-                  {4.9, 0.86, -0.45, radians(-215)},
+                  {4.8, 0.90, -0.12, radians(-215)},
                   {5.6, 0.68, 0.06, radians(-190), true},
                   {6.9, 0.66, 0.10, radians(-175), true},
                   {7.6, 0.95, 0.38, radians(-130)},
