@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <thread>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -13,8 +17,9 @@
 #include "apps/commands.hpp"
 #include "apps/progress_bar.hpp"
 #include "stillmap/core/error.hpp"
+#include "stillmap/core/nearest_name.hpp"
 #include "stillmap/synth/scene_names.hpp"
-#include "stillmap/synth/sequence.hpp"
+#include "stillmap/synth/sequence_writer.hpp"
 
 namespace stillmap {
 namespace {
@@ -26,7 +31,45 @@ struct SynthArguments {
   std::uint32_t seed = 0;
   std::string size = "640x480";
   bool clean = false;
+  std::vector<std::string> without;
+  std::string detections = "none";
+  std::size_t threads = std::max(1U, std::thread::hardware_concurrency());
 };
+
+// The names of effects for --without, and what each switches off.
+struct Effect {
+  std::string_view name;
+  void (*remove)(SyntheticOptions&);
+};
+constexpr std::array<Effect, 7> kEffects{{
+    {"shadows", [](SyntheticOptions& o) { o.render.light.shadows = false; }},
+    {"antialiasing", [](SyntheticOptions& o) { o.render.antialiasing = false; }},
+    {"motion-blur", [](SyntheticOptions& o) { o.sensor.exposure_s = 0; }},
+    {"exposure-drift", [](SyntheticOptions& o) { o.sensor.exposure_drift = false; }},
+    {"color-noise", [](SyntheticOptions& o) { o.sensor.color_noise = false; }},
+    {"depth-noise", [](SyntheticOptions& o) { o.sensor.depth_noise = false; }},
+    {"depth-holes", [](SyntheticOptions& o) { o.sensor.depth_holes = false; }},
+}};
+
+std::vector<std::string> effect_names() {
+  std::vector<std::string> names;
+  for (const Effect& effect : kEffects) names.emplace_back(effect.name);
+  return names;
+}
+
+void remove_effect(SyntheticOptions& options, const std::string& name) {
+  for (const Effect& effect : kEffects) {
+    if (effect.name == name) return effect.remove(options);
+  }
+  throw Error("--without {}: {}", name, name_hint(name, effect_names()));
+}
+
+DetectionKind detection_kind(const std::string& name) {
+  if (name == "none") return DetectionKind::kNone;
+  if (name == "perfect") return DetectionKind::kPerfect;
+  if (name == "imperfect") return DetectionKind::kImperfect;
+  throw Error("--detections {}: {}", name, name_hint(name, {"none", "perfect", "imperfect"}));
+}
 
 // One side of --size. Smaller images show nothing, larger ones are no camera's.
 int parse_side(std::string_view text, const std::string& size) {
@@ -55,15 +98,19 @@ void render(const SynthArguments& arguments) {
   const NamedScene scene = named_scene(arguments.scene);
   SyntheticOptions options;
   options.path = scene.path;
+  options.activity = scene.activity;
   options.frames = arguments.frames > 0 ? arguments.frames : scene.frames;
   options.camera = camera_of_size(arguments.size);
   options.seed = arguments.seed;
   if (arguments.clean) options.sensor = SensorOptions::clean();
+  for (const std::string& name : arguments.without) remove_effect(options, name);
+  const DetectionKind detections = detection_kind(arguments.detections);
 
   ProgressBar progress("frames");
-  write_tum_sequence(SyntheticSequence(options),
-                     arguments.out,
-                     [&](std::size_t done, std::size_t total) { progress.show(done, total); });
+  write_sequence(SyntheticSequence(options),
+                 arguments.out,
+                 {.threads = arguments.threads, .detections = detections},
+                 [&](std::size_t done, std::size_t total) { progress.show(done, total); });
   progress.finish();
   print_output(fmt::format(
       "sequence    {} frames of {} in {}\n", options.frames, arguments.size, arguments.out));
@@ -81,13 +128,28 @@ void add_synth_command(CLI::App& app, CommandResult&) {
       ->required();
   command->add_option("--frames", arguments->frames, "number of frames, at 30 a second")
       ->check(CLI::Range(std::size_t{1}, std::size_t{100000}));
-  command->add_option("--seed", arguments->seed, "varies pictures and noise, not the layout")
+  command
+      ->add_option("--seed", arguments->seed, "varies pictures, clothes and noise, not the layout")
       ->capture_default_str();
   command->add_option("--size", arguments->size, "WIDTHxHEIGHT in pixels")->capture_default_str();
-  command->add_flag("--clean", arguments->clean, "a perfect sensor: no noise, no missing depth");
+  command->add_flag(
+      "--clean", arguments->clean, "a perfect sensor: no noise, blur, drift or missing depth");
+  command->add_option("--without",
+                      arguments->without,
+                      fmt::format("switches one effect off, repeatable; one of: {}",
+                                  fmt::join(effect_names(), ", ")));
+  command
+      ->add_option("--detections",
+                   arguments->detections,
+                   "also write detections/ from the truth: none, perfect, or imperfect, which "
+                   "has the faults of a network")
+      ->capture_default_str();
+  command->add_option("--threads", arguments->threads, "that render; the result is the same")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{256}))
+      ->capture_default_str();
   command->footer(
       "Examples:\n"
-      "  stillmap synth room --scene empty\n"
+      "  stillmap synth office --scene walking_xyz --detections imperfect\n"
       "  stillmap synth round --scene loop --size 320x240 --seed 7 --clean");
   command->callback([arguments] { render(*arguments); });
 }

@@ -40,28 +40,40 @@ MipTexture::Level MipTexture::pack(const cv::Mat3b& picture) {
 
 namespace {
 
-struct FixedPoint {
-  std::size_t whole;
-  std::uint32_t part;  // of 256
+// Two neighbouring texels in one direction and where between them a place lies.
+struct Span {
+  std::size_t first;
+  std::size_t second;
+  std::uint32_t part;  // of 256, from first to second
 };
 
-FixedPoint texel_position(float normalized, int size) {
-  const float texels = normalized * static_cast<float>(size) - 0.5F;
-  const float inside = std::clamp(texels, 0.F, static_cast<float>(size - 1));
+Span span_at(float normalized, int size, bool repeats) {
+  float texels = normalized * static_cast<float>(size) - 0.5F;
+  if (repeats) {
+    const float periods = std::floor(normalized);
+    texels -= periods * static_cast<float>(size);
+    if (texels < 0.F) texels += static_cast<float>(size);
+  }
+  const float last = static_cast<float>(repeats ? size : size - 1);
+  const float inside = texels < last ? std::max(texels, 0.F) : last;  // NaN: the last
   const int fixed = static_cast<int>(inside * 256.F);
-  return {static_cast<std::size_t>(fixed >> 8), static_cast<std::uint32_t>(fixed & 255)};
+  const int whole = std::min(fixed >> 8, size - 1);
+  const int next = whole + 1 < size ? whole + 1 : repeats ? 0 : whole;
+  return {static_cast<std::size_t>(whole),
+          static_cast<std::size_t>(next),
+          static_cast<std::uint32_t>(fixed & 255)};
 }
 
 }  // namespace
 
-inline TexelSum MipTexture::sample_level(const Level& level, const TexturePoint& at) {
-  const FixedPoint x = texel_position(at.u, level.width);
-  const FixedPoint y = texel_position(at.v, level.height);
+inline TexelSum MipTexture::sample_level(const Level& level, const TexturePoint& at, bool repeats) {
+  const Span x = span_at(at.u, level.width, repeats);
+  const Span y = span_at(at.v, level.height, repeats);
   const std::size_t width = static_cast<std::size_t>(level.width);
-  const std::size_t right = x.whole + 1 < width ? 1 : 0;
-  const std::size_t down = y.whole + 1 < static_cast<std::size_t>(level.height) ? width : 0;
-  const std::uint32_t* texel = level.texels.data() + y.whole * width + x.whole;
-  const std::uint32_t a = texel[0], b = texel[right], c = texel[down], d = texel[down + right];
+  const std::uint32_t* upper = level.texels.data() + y.first * width;
+  const std::uint32_t* lower = level.texels.data() + y.second * width;
+  const std::uint32_t a = upper[x.first], b = upper[x.second], c = lower[x.first],
+                      d = lower[x.second];
 
   const std::uint32_t wd = (x.part * y.part) >> 8U;
   const std::uint32_t wb = x.part - wd, wc = y.part - wd;
@@ -82,29 +94,31 @@ inline MipTexture::Blend MipTexture::blend_at(float level) const {
   return {static_cast<std::size_t>(fixed >> 8), static_cast<std::uint32_t>(fixed & 255)};
 }
 
-TexelSum MipTexture::sample(const TexturePoint& at, float level) const {
+TexelSum MipTexture::sample(const TexturePoint& at, float level, bool repeats) const {
   const Blend blend = blend_at(level);
-  TexelSum sum = sample_level(levels_[blend.fine], at);
+  TexelSum sum = sample_level(levels_[blend.fine], at, repeats);
   if (blend.share == 0) return sum;
-  const TexelSum coarse = sample_level(levels_[blend.fine + 1], at);
+  const TexelSum coarse = sample_level(levels_[blend.fine + 1], at, repeats);
   for (std::size_t i = 0; i < 3; ++i) {
     sum[i] = (sum[i] * (256U - blend.share) + coarse[i] * blend.share) >> 8U;
   }
   return sum;
 }
 
-TexelSum MipTexture::sample_four(const std::array<TexturePoint, 4>& at, float level) const {
+TexelSum MipTexture::sample_four(const std::array<TexturePoint, 4>& at,
+                                 float level,
+                                 bool repeats) const {
   const Blend blend = blend_at(level);
   TexelSum sum{};
   TexturePoint middle;
   for (const TexturePoint& point : at) {
-    const TexelSum fine = sample_level(levels_[blend.fine], point);
+    const TexelSum fine = sample_level(levels_[blend.fine], point, repeats);
     for (std::size_t i = 0; i < 3; ++i) sum[i] += fine[i];
     middle.u += 0.25F * point.u;
     middle.v += 0.25F * point.v;
   }
   if (blend.share == 0) return sum;
-  const TexelSum coarse = sample_level(levels_[blend.fine + 1], middle);
+  const TexelSum coarse = sample_level(levels_[blend.fine + 1], middle, repeats);
   for (std::size_t i = 0; i < 3; ++i) {
     sum[i] = (sum[i] * (256U - blend.share) + 4U * coarse[i] * blend.share) >> 8U;
   }

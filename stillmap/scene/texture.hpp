@@ -19,19 +19,22 @@ struct TexturePoint {
 };
 
 /// A picture on a rectangle with a pyramid of halved copies, so that it can be sampled without
-/// aliasing from any distance. Outside the rectangle the edge's colour goes on.
+/// aliasing from any distance. Outside the rectangle the edge's colour goes on, or the picture
+/// starts again, as the caller likes.
 class MipTexture {
  public:
   /// `base` is red, green, blue; its columns and rows cover the whole rectangle.
   explicit MipTexture(const cv::Mat3b& base);
 
   /// Colour at a place, averaged over about 2^level texels of the base across; level < 0 means
-  /// magnified. Linear in place and level.
-  [[nodiscard]] TexelSum sample(const TexturePoint& at, float level) const;
+  /// magnified. Linear in place and level. `repeats`: beyond its edges the picture starts again.
+  [[nodiscard]] TexelSum sample(const TexturePoint& at, float level, bool repeats = false) const;
 
   /// The sum of samples at four places at most 2^level texels from one another. The coarser of the
   /// two levels that are blended is looked up in the places' middle alone: it varies little there.
-  [[nodiscard]] TexelSum sample_four(const std::array<TexturePoint, 4>& at, float level) const;
+  [[nodiscard]] TexelSum sample_four(const std::array<TexturePoint, 4>& at,
+                                     float level,
+                                     bool repeats = false) const;
 
   [[nodiscard]] int width() const { return levels_.front().width; }
   [[nodiscard]] int height() const { return levels_.front().height; }
@@ -50,7 +53,9 @@ class MipTexture {
   };
 
   [[nodiscard]] static Level pack(const cv::Mat3b& picture);
-  [[nodiscard]] static TexelSum sample_level(const Level& level, const TexturePoint& at);
+  [[nodiscard]] static TexelSum sample_level(const Level& level,
+                                             const TexturePoint& at,
+                                             bool repeats);
   [[nodiscard]] Blend blend_at(float level) const;
 
   std::vector<Level> levels_;

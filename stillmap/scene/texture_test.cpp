@@ -40,6 +40,15 @@ TEST(MipTexture, GoesOnBeyondItsEdges) {
   EXPECT_EQ(texture.sample({9.F, 9.F}, 0.F), times_256(240, 240, 240));
 }
 
+TEST(MipTexture, StartsAgainWhereItRepeats) {
+  const MipTexture texture = four_colors();
+  EXPECT_EQ(texture.sample({1.25F, -1.75F}, 0.F, true), times_256(200, 0, 0));
+  EXPECT_EQ(texture.sample({-0.25F, 7.25F}, 0.F, true), times_256(0, 100, 0));
+  // Half way from the last column to the first.
+  EXPECT_EQ(texture.sample({1.F, 0.25F}, 0.F, true), times_256(100, 50, 0));
+  EXPECT_EQ(texture.sample({0.F, 0.25F}, 0.F, true), times_256(100, 50, 0));
+}
+
 TEST(MipTexture, AveragesAtCoarseLevels) {
   const MipTexture texture = four_colors();
   EXPECT_EQ(texture.sample({0.1F, 0.9F}, 1.F), times_256(110, 85, 75));

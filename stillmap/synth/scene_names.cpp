@@ -1,33 +1,42 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stillmap/synth/scene_names.hpp"
 
-#include <algorithm>
+#include <array>
 
 #include "stillmap/core/error.hpp"
 #include "stillmap/core/nearest_name.hpp"
 
 namespace stillmap {
+namespace {
+
+struct Entry {
+  std::string_view name;
+  NamedScene scene;
+};
+constexpr std::array<Entry, 7> kScenes{{
+    {"walking_xyz", {PathKind::kXyz, Activity::kWalking, 300}},
+    {"walking_rpy", {PathKind::kRpy, Activity::kWalking, 300}},
+    {"walking_halfsphere", {PathKind::kHalfsphere, Activity::kWalking, 300}},
+    {"walking_static", {PathKind::kStatic, Activity::kWalking, 300}},
+    {"sitting_static", {PathKind::kStatic, Activity::kSitting, 300}},
+    {"empty", {PathKind::kXyz, Activity::kNone, 300}},
+    // One round and a tenth: the end sees what the start saw.
+    {"loop", {PathKind::kLoop, Activity::kNone, 660}},
+}};
+
+}  // namespace
 
 std::vector<std::string> scene_names() {
-  return {"walking_xyz",
-          "walking_rpy",
-          "walking_halfsphere",
-          "walking_static",
-          "sitting_static",
-          "empty",
-          "loop"};
+  std::vector<std::string> names;
+  for (const Entry& entry : kScenes) names.emplace_back(entry.name);
+  return names;
 }
 
 NamedScene named_scene(std::string_view name) {
-  if (name == "empty") return {PathKind::kXyz, 300};
-  // One round and a tenth: the end sees what the start saw.
-  if (name == "loop") return {PathKind::kLoop, 660};
-  const std::vector<std::string> known = scene_names();
-  if (std::ranges::find(known, name) == known.end()) {
-    throw Error("unknown scene '{}': {}", name, name_hint(name, known));
+  for (const Entry& entry : kScenes) {
+    if (entry.name == name) return entry.scene;
   }
-  throw Error("scene '{}' has people, whom this version cannot render: use 'empty' or 'loop'",
-              name);
+  throw Error("unknown scene '{}': {}", name, name_hint(name, scene_names()));
 }
 
 }  // namespace stillmap

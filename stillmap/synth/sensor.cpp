@@ -12,24 +12,33 @@ namespace stillmap {
 namespace {
 
 // Every pixel's random numbers come from a key of its own: no order of evaluation matters.
-enum class Effect : std::uint64_t { kColor = 1, kDepth = 2, kEdge = 3 };
+enum class Effect : std::uint64_t { kColor = 1, kDepth = 2, kEdge = 3, kDrift = 4 };
 
 std::uint64_t effect_key(Effect effect, std::uint32_t seed, FrameId frame) {
   const std::uint64_t run = (std::uint64_t{seed} << 32U) | frame.value;
   return mix_bits(mix_bits(run) + static_cast<std::uint64_t>(effect));
 }
 
-cv::Mat3b noisy_color(const cv::Mat3b& perfect, float sigma, std::uint64_t key) {
-  cv::Mat3b noisy(perfect.size());
+using Gains = std::array<float, 3>;
+
+// Gain and noise in one pass.
+cv::Mat3b recorded_color(const cv::Mat3b& perfect,
+                         const Gains& gains,
+                         float sigma,
+                         std::uint64_t key) {
+  cv::Mat3b recorded(perfect.size());
   for (int y = 0; y < perfect.rows; ++y) {
+    const cv::Vec3b* in = perfect.ptr<cv::Vec3b>(y);
+    cv::Vec3b* out = recorded.ptr<cv::Vec3b>(y);
     for (int x = 0; x < perfect.cols; ++x) {
       for (int i = 0; i < 3; ++i) {
-        const float value = static_cast<float>(perfect(y, x)[i]) + sigma * hash_normal(key++);
-        noisy(y, x)[i] = cv::saturate_cast<std::uint8_t>(value);
+        const float noise = sigma > 0 ? sigma * hash_normal(key++) : 0.F;
+        const float value = gains[static_cast<std::size_t>(i)] * static_cast<float>(in[x][i]);
+        out[x][i] = cv::saturate_cast<std::uint8_t>(value + noise);
       }
     }
   }
-  return noisy;
+  return recorded;
 }
 
 struct DepthSensor {
@@ -121,16 +130,32 @@ cv::Mat1f noisy_depth(const cv::Mat1f& perfect, const DepthSensor& sensor, std::
 
 }  // namespace
 
-RenderedImage apply_sensor(const RenderedImage& perfect,
-                           const CameraModel& camera,
-                           const SensorOptions& options,
-                           std::uint32_t seed,
-                           FrameId frame) {
-  RenderedImage measured = perfect;
-  if (options.color_noise) {
-    measured.color.mat = noisy_color(perfect.color.mat,
-                                     static_cast<float>(options.color_sigma),
-                                     effect_key(Effect::kColor, seed, frame));
+std::array<float, 3> exposure_gains(double share, std::uint32_t seed, FrameId frame) {
+  constexpr double kFramesPerTurn = 230.0;
+  const auto wave = [&](std::uint64_t part, double speed) {
+    const double phase = hash_uniform(effect_key(Effect::kDrift, seed, FrameId(0)) + part);
+    return std::sin(2.0 * std::numbers::pi * (speed * frame.value / kFramesPerTurn + phase));
+  };
+  const double brightness = share * (0.7 * wave(0, 1.0) + 0.3 * wave(1, 2.3));
+  Gains gains;
+  for (std::size_t i = 0; i < 3; ++i) {
+    gains[i] = static_cast<float>(1.0 + brightness + 0.5 * share * wave(2 + i, 0.6));
+  }
+  return gains;
+}
+
+RgbdImage apply_sensor(const RenderedImage& perfect,
+                       const CameraModel& camera,
+                       const SensorOptions& options,
+                       std::uint32_t seed,
+                       FrameId frame) {
+  RgbdImage measured{perfect.color, perfect.depth};
+  if (options.exposure_drift || options.color_noise) {
+    const Gains gains = options.exposure_drift ? exposure_gains(options.drift_share, seed, frame)
+                                               : Gains{1.F, 1.F, 1.F};
+    const float sigma = options.color_noise ? static_cast<float>(options.color_sigma) : 0.F;
+    measured.color.mat =
+        recorded_color(perfect.color.mat, gains, sigma, effect_key(Effect::kColor, seed, frame));
   }
   const DepthSensor sensor(options, camera);
   if (options.depth_holes) {

@@ -14,7 +14,7 @@ namespace {
 const CameraModel kCamera = builtin_camera("tum_fr3");  // fx 535.4: disparity 40.155 px at 1 m
 
 RenderedImage flat(float z, const cv::Vec3b& color = {128, 128, 128}) {
-  return {ColorImage(cv::Mat3b(480, 640, color)), DepthImage(cv::Mat1f(480, 640, z))};
+  return {ColorImage(cv::Mat3b(480, 640, color)), DepthImage(cv::Mat1f(480, 640, z)), {}};
 }
 
 SensorOptions only_depth_noise() {
@@ -47,7 +47,7 @@ Spread spread_of(const Image& values) {
 
 TEST(Sensor, CleanChangesNothing) {
   const RenderedImage perfect = flat(9.F);
-  const RenderedImage seen = apply_sensor(perfect, kCamera, SensorOptions::clean(), 1, FrameId(0));
+  const RgbdImage seen = apply_sensor(perfect, kCamera, SensorOptions::clean(), 1, FrameId(0));
   EXPECT_EQ(cv::norm(seen.depth.mat, perfect.depth.mat, cv::NORM_INF), 0);
   EXPECT_EQ(cv::norm(seen.color.mat, perfect.color.mat, cv::NORM_INF), 0);
 }
@@ -56,7 +56,7 @@ TEST(Sensor, DepthNoiseGrowsWithTheSquareOfDepth) {
   SensorOptions options = only_depth_noise();
   options.disparity_step_px = 0;
   for (const float z : {1.F, 2.F, 4.F}) {
-    const RenderedImage seen = apply_sensor(flat(z), kCamera, options, 1, FrameId(3));
+    const RgbdImage seen = apply_sensor(flat(z), kCamera, options, 1, FrameId(3));
     const Spread spread = spread_of(seen.depth.mat);
     EXPECT_NEAR(spread.mean, z, 0.001 * z);
     EXPECT_NEAR(spread.sigma, 0.0015 * z * z, 0.03 * 0.0015 * z * z);
@@ -71,7 +71,7 @@ TEST(Sensor, QuantisationAddsItsOwnSpread) {
     for (int x = 0; x < 640; ++x)
       slope.depth.mat(y, x) = 1.9F + 0.2F * static_cast<float>(y) / 479.F;
   }
-  const RenderedImage seen = apply_sensor(slope, kCamera, only_depth_noise(), 1, FrameId(3));
+  const RgbdImage seen = apply_sensor(slope, kCamera, only_depth_noise(), 1, FrameId(3));
   const cv::Mat1f error = seen.depth.mat - slope.depth.mat;
   const double step = 4.0 / 40.155 / 8.0 / std::sqrt(12.0);
   const double expected = std::hypot(0.0015 * 4.0, step);
@@ -79,31 +79,32 @@ TEST(Sensor, QuantisationAddsItsOwnSpread) {
 }
 
 TEST(Sensor, DisparitiesAreEighthsOfAPixel) {
-  const RenderedImage seen = apply_sensor(flat(2.F), kCamera, only_depth_noise(), 1, FrameId(0));
+  const RgbdImage seen = apply_sensor(flat(2.F), kCamera, only_depth_noise(), 1, FrameId(0));
   for (int x = 0; x < 640; ++x) {
     const double eighths = 8.0 * 40.155 / seen.depth.mat(100, x);
     EXPECT_NEAR(eighths, std::round(eighths), 1e-3);
   }
   SensorOptions no_noise = only_depth_noise();
   no_noise.depth_sigma_at_1m_m = 0;
-  const RenderedImage quantised = apply_sensor(flat(2.F), kCamera, no_noise, 1, FrameId(0));
+  const RgbdImage quantised = apply_sensor(flat(2.F), kCamera, no_noise, 1, FrameId(0));
   EXPECT_NEAR(quantised.depth.mat(5, 5), 40.155 / 20.125, 1e-5);  // 20.0775 px, rounded
 }
 
 TEST(Sensor, NoiseIsTheSameForImagesOfAnotherSize) {
   const CameraModel half = synthetic_camera(320, 240);
   const RenderedImage small{ColorImage(cv::Mat3b(240, 320, cv::Vec3b(9, 9, 9))),
-                            DepthImage(cv::Mat1f(240, 320, 2.F))};
+                            DepthImage(cv::Mat1f(240, 320, 2.F)),
+                            {}};
   SensorOptions options = only_depth_noise();
   options.disparity_step_px = 0;
-  const RenderedImage seen = apply_sensor(small, half, options, 1, FrameId(3));
+  const RgbdImage seen = apply_sensor(small, half, options, 1, FrameId(3));
   EXPECT_NEAR(spread_of(seen.depth.mat).sigma, 0.006, 0.0003);
 }
 
 TEST(Sensor, NearThingsShadowTheProjectorOnTheirLeft) {
   RenderedImage step = flat(3.F);
   step.depth.mat(cv::Rect(300, 0, 100, 480)).setTo(1.F);
-  const RenderedImage seen = apply_sensor(step, kCamera, only_holes(), 1, FrameId(0));
+  const RgbdImage seen = apply_sensor(step, kCamera, only_holes(), 1, FrameId(0));
   // The shadow is 40.155 * (1 - 1/3) = 26.77 pixels wide.
   for (int x = 0; x < 640; ++x) {
     const bool missing = x >= 300 - 26 && x < 300;
@@ -116,7 +117,7 @@ TEST(Sensor, EdgesAreRagged) {
   step.depth.mat(cv::Rect(300, 0, 100, 480)).setTo(1.F);
   SensorOptions options = only_holes();
   options.edge_dropout = 0.5;
-  const RenderedImage seen = apply_sensor(step, kCamera, options, 1, FrameId(0));
+  const RgbdImage seen = apply_sensor(step, kCamera, options, 1, FrameId(0));
   const int missing = 480 - cv::countNonZero(seen.depth.mat.col(400));
   EXPECT_NEAR(missing, 240, 45);  // four sigma of a fair coin
   EXPECT_EQ(cv::countNonZero(seen.depth.mat.col(420)), 480);
@@ -131,7 +132,7 @@ TEST(Sensor, GrazingSurfacesAreMissing) {
   SensorOptions options = only_holes();
   options.max_depth_m = 100;
   options.min_depth_m = 0;
-  const RenderedImage seen = apply_sensor(floor, kCamera, options, 1, FrameId(0));
+  const RgbdImage seen = apply_sensor(floor, kCamera, options, 1, FrameId(0));
   // 80 degrees: z = 0.4 * tan(80 deg) = 2.27 m, at y = 247.6 + 0.4 * 535.4 / 2.27 = 342.
   EXPECT_EQ(seen.depth.mat(330, 320), 0.F);
   EXPECT_GT(seen.depth.mat(350, 320), 0.F);
@@ -139,10 +140,10 @@ TEST(Sensor, GrazingSurfacesAreMissing) {
 
 TEST(Sensor, RangeIsLimited) {
   for (const float z : {0.45F, 8.5F}) {
-    const RenderedImage seen = apply_sensor(flat(z), kCamera, only_holes(), 1, FrameId(0));
+    const RgbdImage seen = apply_sensor(flat(z), kCamera, only_holes(), 1, FrameId(0));
     EXPECT_EQ(cv::countNonZero(seen.depth.mat), 0);
   }
-  const RenderedImage seen = apply_sensor(flat(7.5F), kCamera, only_holes(), 1, FrameId(0));
+  const RgbdImage seen = apply_sensor(flat(7.5F), kCamera, only_holes(), 1, FrameId(0));
   EXPECT_EQ(cv::countNonZero(seen.depth.mat), 640 * 480);
 }
 
@@ -156,6 +157,29 @@ TEST(Sensor, ColourNoiseHasItsSigmaAndChangesFromFrameToFrame) {
   EXPECT_NEAR(spread.mean, 128, 0.05);
   EXPECT_NEAR(spread.sigma, std::hypot(3.0, 1.0 / std::sqrt(12.0)), 0.05);
   EXPECT_GT(cv::norm(a, b, cv::NORM_INF), 5);
+}
+
+TEST(Sensor, ExposureDriftsSlowlyAndScalesBrightness) {
+  double lowest = 2, highest = 0, fastest = 0;
+  for (std::uint32_t i = 0; i < 600; ++i) {
+    const double green = exposure_gains(0.06, 3, FrameId(i))[1];
+    const double next = exposure_gains(0.06, 3, FrameId(i + 1))[1];
+    lowest = std::min(lowest, green);
+    highest = std::max(highest, green);
+    fastest = std::max(fastest, std::abs(next - green));
+  }
+  EXPECT_GT(lowest, 1 - 0.06 * 1.5);
+  EXPECT_LT(highest, 1 + 0.06 * 1.5);
+  EXPECT_GT(highest - lowest, 0.06);
+  EXPECT_LT(fastest, 0.004);
+  SensorOptions options = SensorOptions::clean();
+  options.exposure_drift = true;
+  const cv::Vec3b seen =
+      apply_sensor(flat(1.F, {200, 100, 50}), kCamera, options, 3, FrameId(70)).color.mat(9, 9);
+  const std::array<float, 3> gains = exposure_gains(options.drift_share, 3, FrameId(70));
+  EXPECT_NEAR(seen[0], 200 * gains[0], 0.51);
+  EXPECT_NEAR(seen[1], 100 * gains[1], 0.51);
+  EXPECT_NEAR(seen[2], 50 * gains[2], 0.51);
 }
 
 }  // namespace

@@ -1,14 +1,44 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stillmap/synth/sequence.hpp"
 
+#include <algorithm>
 #include <cstdlib>
+#include <set>
 
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
 #include "stillmap/core/error.hpp"
+#include "stillmap/scene/office.hpp"
 
 namespace stillmap {
+namespace {
+
+std::shared_ptr<const World> furnished_world(const SyntheticOptions& options) {
+  World world = make_office(options.seed);
+  add_people(world, options.activity, options.seed);
+  return std::make_shared<const World>(std::move(world));
+}
+
+double mean_distance(const std::vector<Eigen::Vector3f>& a, const std::vector<Eigen::Vector3f>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (b[i] - a[i]).norm();
+  return a.empty() ? 0.0 : sum / static_cast<double>(a.size());
+}
+
+std::vector<Eigen::Vector3f> moved(const std::vector<Eigen::Vector3f>& points,
+                                   const Eigen::Isometry3d& T) {
+  std::vector<Eigen::Vector3f> result;
+  result.reserve(points.size());
+  for (const Eigen::Vector3f& p : points) result.push_back((T * p.cast<double>()).cast<float>());
+  return result;
+}
+
+bool all_in(const std::vector<Person>& people, const std::set<int>& ids) {
+  return std::ranges::all_of(people, [&](const Person& p) { return ids.contains(p.id); });
+}
+
+}  // namespace
 
 CameraModel synthetic_camera(int width_px, int height_px) {
   const CameraModel original = builtin_camera("tum_fr3");
@@ -27,34 +57,55 @@ CameraModel synthetic_camera(int width_px, int height_px) {
 
 SyntheticSequence::SyntheticSequence(const SyntheticOptions& options)
     : options_(options),
-      renderer_(std::make_shared<const Scene>(make_room(options.seed)), options.camera) {
+      world_(furnished_world(options)),
+      choreography_(*world_, options.activity),
+      renderer_(world_, options.camera, options.render) {
   STILLMAP_CHECK(options.frames_per_second > 0);
+}
+
+double SyntheticSequence::time_s(FrameId id) const {
+  return id.value / options_.frames_per_second;
 }
 
 Stamp SyntheticSequence::stamp(FrameId id) const {
   constexpr double kStart = 1000.0;
   Stamp stamp;
-  stamp.text = fmt::format("{:.6f}", kStart + id.value / options_.frames_per_second);
+  stamp.text = fmt::format("{:.6f}", kStart + time_s(id));
   stamp.seconds = std::strtod(stamp.text.c_str(), nullptr);  // the number that a reader would get
   return stamp;
 }
 
 Eigen::Isometry3d SyntheticSequence::pose(FrameId id) const {
-  return T_world_camera(options_.path, id.value / options_.frames_per_second);
+  return T_world_camera(options_.path, time_s(id));
 }
 
-FramePtr SyntheticSequence::frame(FrameId id) const {
+WorldState SyntheticSequence::state(FrameId id) const {
+  return choreography_.at(time_s(id));
+}
+
+Exposure SyntheticSequence::exposure(FrameId id) const {
+  const double middle = time_s(id), half = 0.5 * options_.sensor.exposure_s;
+  const double open = std::max(0.0, middle - half), close = middle + half;
+  return {T_world_camera(options_.path, middle),
+          T_world_camera(options_.path, open),
+          T_world_camera(options_.path, close),
+          choreography_.at(open),
+          choreography_.at(close)};
+}
+
+SyntheticFrame SyntheticSequence::render(FrameId id) const {
   STILLMAP_CHECK(id.index() < size());
-  const RenderedImage image =
-      apply_sensor(renderer_.render(pose(id)), options_.camera, options_.sensor, options_.seed, id);
+  const RenderedImage perfect = renderer_.render(exposure(id));
+  const RgbdImage measured =
+      apply_sensor(perfect, options_.camera, options_.sensor, options_.seed, id);
   RgbdFrame frame;
   frame.id = id;
   frame.stamp = stamp(id);
   frame.depth_stamp_s = frame.stamp.seconds;
-  frame.color = image.color;
-  frame.depth = image.depth;
-  cv::cvtColor(image.color.mat, frame.gray.mat, cv::COLOR_RGB2GRAY);
-  return std::make_shared<const RgbdFrame>(std::move(frame));
+  frame.color = measured.color;
+  frame.depth = measured.depth;
+  cv::cvtColor(measured.color.mat, frame.gray.mat, cv::COLOR_RGB2GRAY);
+  return {std::make_shared<const RgbdFrame>(std::move(frame)), perfect};
 }
 
 Trajectory SyntheticSequence::ground_truth() const {
@@ -64,6 +115,45 @@ Trajectory SyntheticSequence::ground_truth() const {
     trajectory.push_back({stamp(FrameId(i)), pose(FrameId(i))});
   }
   return trajectory;
+}
+
+std::vector<ObjectSpeed> SyntheticSequence::speeds(FrameId id) const {
+  const double step = 0.5 / options_.frames_per_second;
+  const double from = std::max(0.0, time_s(id) - step), to = time_s(id) + step;
+  const WorldState before = choreography_.at(from), after = choreography_.at(to);
+  std::vector<ObjectSpeed> speeds;
+  for (std::size_t i = 0; i < world_->things.size(); ++i) {
+    const Thing& thing = world_->things[i];
+    if (thing.id == 0) continue;
+    const double distance = mean_distance(moved(thing.mesh.positions, before.T_world_things[i]),
+                                          moved(thing.mesh.positions, after.T_world_things[i]));
+    speeds.push_back({thing.id, distance / (to - from)});
+  }
+  for (std::size_t i = 0; i < world_->people.size(); ++i) {
+    const Person& person = world_->people[i];
+    const double distance = mean_distance(person.body.posed(before.people[i]).positions,
+                                          person.body.posed(after.people[i]).positions);
+    speeds.push_back({person.id, distance / (to - from)});
+  }
+  return speeds;
+}
+
+std::vector<int> SyntheticSequence::moved_ids() const {
+  std::set<int> moved;
+  const WorldState first = state(FrameId(0));
+  for (std::uint32_t k = 1; k < size(); ++k) {
+    const WorldState now = state(FrameId(k));
+    for (std::size_t i = 0; i < world_->things.size(); ++i) {
+      const bool stays = now.T_world_things[i].matrix() == first.T_world_things[i].matrix();
+      if (!stays) moved.insert(world_->things[i].id);
+    }
+  }
+  for (std::uint32_t k = 0; k < size() && !all_in(world_->people, moved); ++k) {
+    for (const ObjectSpeed& object : speeds(FrameId(k))) {
+      if (object.speed_mps > kMovingSpeedMps) moved.insert(object.id);
+    }
+  }
+  return {moved.begin(), moved.end()};
 }
 
 }  // namespace stillmap

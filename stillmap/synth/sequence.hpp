@@ -3,15 +3,16 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
-#include <functional>
+#include <memory>
 
 #include "stillmap/core/camera.hpp"
 #include "stillmap/core/rgbd_frame.hpp"
 #include "stillmap/core/trajectory.hpp"
+#include "stillmap/render/renderer.hpp"
+#include "stillmap/scene/choreography.hpp"
 #include "stillmap/synth/camera_path.hpp"
-#include "stillmap/synth/renderer.hpp"
 #include "stillmap/synth/sensor.hpp"
+#include "stillmap/synth/truth.hpp"
 
 namespace stillmap {
 
@@ -21,15 +22,24 @@ namespace stillmap {
 
 struct SyntheticOptions {
   PathKind path = PathKind::kXyz;
+  Activity activity = Activity::kNone;
   CameraModel camera = synthetic_camera(640, 480);
   std::size_t frames = 300;
   double frames_per_second = 30.0;
-  std::uint32_t seed = 0;  ///< of the scene's textures and the sensor's noise
+  std::uint32_t seed = 0;  ///< of the pictures on things, the people's clothes, the sensor's noise
+  RenderOptions render;    ///< effects of light
   SensorOptions sensor;    ///< a Kinect's effects unless SensorOptions::clean()
 };
 
-/// A sequence of the room of make_room() along a path, with exact truth. Frames are rendered when
-/// asked for; asking for the same frame twice gives equal bytes. Safe to use from several threads.
+/// A frame as the sensor gives it, and the truth about it.
+struct SyntheticFrame {
+  FramePtr frame;
+  RenderedImage truth;  ///< without the sensor's faults
+};
+
+/// A sequence in the office of make_office() along a path, with exact truth. Frames are rendered
+/// when asked for; asking for the same frame twice gives equal bytes. Safe to use from several
+/// threads.
 class SyntheticSequence {
  public:
   explicit SyntheticSequence(const SyntheticOptions& options);
@@ -37,30 +47,39 @@ class SyntheticSequence {
   [[nodiscard]] std::size_t size() const { return options_.frames; }
   [[nodiscard]] const CameraModel& camera() const { return options_.camera; }
   [[nodiscard]] const SyntheticOptions& options() const { return options_; }
+  [[nodiscard]] const World& world() const { return *world_; }
 
   /// Frame `id`, which is below size(). Its depth is taken at the same time as its colour.
-  [[nodiscard]] FramePtr frame(FrameId id) const;
+  [[nodiscard]] SyntheticFrame render(FrameId id) const;
+  [[nodiscard]] FramePtr frame(FrameId id) const { return render(id).frame; }
 
-  /// When frame `id` was taken; six decimals, the first at 1000 s.
+  /// When frame `id` was taken (the middle of its exposure); six decimals, the first at 1000 s.
   [[nodiscard]] Stamp stamp(FrameId id) const;
 
-  /// The true pose of frame `id`, in the room's coordinates.
+  /// The true pose of frame `id`, in the office's coordinates.
   [[nodiscard]] Eigen::Isometry3d pose(FrameId id) const;
 
   /// stamp() and pose() of every frame.
   [[nodiscard]] Trajectory ground_truth() const;
 
+  /// Where everything is in frame `id`.
+  [[nodiscard]] WorldState state(FrameId id) const;
+
+  /// How fast what can move is in frame `id`, as the mean over its corners: things by their order
+  /// in world(), then people.
+  [[nodiscard]] std::vector<ObjectSpeed> speeds(FrameId id) const;
+
+  /// The ids of what moves in any frame, ascending.
+  [[nodiscard]] std::vector<int> moved_ids() const;
+
  private:
+  [[nodiscard]] double time_s(FrameId id) const;
+  [[nodiscard]] Exposure exposure(FrameId id) const;
+
   SyntheticOptions options_;
+  std::shared_ptr<const World> world_;
+  Choreography choreography_;
   Renderer renderer_;
 };
-
-/// Writes a sequence in the layout of the TUM RGB-D benchmark, with PNG images, associations.txt,
-/// camera.yaml and groundtruth.txt. `on_progress`, where given, is called with the number of frames
-/// done and of all. Throws Error for a folder that holds something already, and when anything
-/// cannot be written; the lists come last, so that a folder with rgb.txt is complete.
-void write_tum_sequence(const SyntheticSequence& sequence,
-                        const std::filesystem::path& folder,
-                        const std::function<void(std::size_t, std::size_t)>& on_progress = nullptr);
 
 }  // namespace stillmap

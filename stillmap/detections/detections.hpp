@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <opencv2/core/mat.hpp>
+
+#include "stillmap/core/trajectory.hpp"
+
+namespace stillmap {
+
+/// A rectangle of pixels, from (x0, y0) to just before (x1, y1): the pixel in column u and row v
+/// covers [u, u + 1) x [v, v + 1). It may reach beyond the image.
+struct PixelBox {
+  double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+
+  [[nodiscard]] double width() const { return x1 - x0; }
+  [[nodiscard]] double height() const { return y1 - y0; }
+  [[nodiscard]] double area() const { return width() * height(); }
+  bool operator==(const PixelBox&) const = default;
+};
+
+/// Something that a network, or whatever stands in for one, has found in an image.
+struct DetectedObject {
+  int id = 0;              ///< 1 to 255, unique in its frame; says nothing across frames
+  std::string class_name;  ///< of COCO where that has one
+  float score = 0;         ///< how sure it is, in [0, 1]
+  PixelBox box;            ///< not empty
+
+  bool operator==(const DetectedObject&) const = default;
+};
+
+/// Whose pixel is whose: 8 bits, the id of an object, or 0 where there is none. Like the images of
+/// core/images.hpp, never written to by whoever is given one.
+struct ObjectMask {
+  cv::Mat1b mat;
+  ObjectMask() = default;
+  explicit ObjectMask(cv::Mat1b ids) : mat(std::move(ids)) {}
+};
+
+/// What was found in one colour image.
+struct FrameDetections {
+  Stamp stamp;  ///< of the colour image
+  std::vector<DetectedObject> objects;
+  ObjectMask mask;  ///< as large as the image; empty where no object has pixels
+};
+
+}  // namespace stillmap
