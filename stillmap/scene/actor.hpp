@@ -32,21 +32,21 @@ struct Seat {
 /// What somebody does. Times of tracks are those of `loop`.
 struct Role {
   FloorPath path;
-  std::vector<Walk> walks;
-  std::optional<Seat> seat;
+  std::vector<Walk> walks{};
+  std::optional<Seat> seat{};
   EasedTrack lean{{{0.0, 0.0}}};
   EasedTrack crouch_m{{{0.0, 0.0}}};  ///< how much lower the pelvis is
   EasedTrack head_yaw{{{0.0, 0.0}}};
   EasedTrack head_pitch{{{0.0, 0.0}}};
   EasedTrack talks{{{0.0, 0.0}}};  ///< 1: gestures and looks about
-  std::vector<Grip> grips;
+  std::vector<Grip> grips{};
   double liveliness = 0;  ///< shifts the small movements against those of others
   /// From its end on, the time from `start_s` to `end_s` is played again and again.
   struct Loop {
     double start_s;
     double end_s;
   };
-  std::optional<Loop> loop;
+  std::optional<Loop> loop{};
 };
 
 /// Somebody with a role.

@@ -21,10 +21,13 @@ FloorPose floor_pose(const Isometry3d& T) {
   return {T.translation().head<2>(), std::atan2(T(1, 0), T(0, 0))};
 }
 
-// Somewhere on a chair, turned against it to the left.
-FloorPose seat_on(const World& office, const std::string& chair, double ahead, double turn) {
+// Somewhere on a chair, `shift` off its middle, turned against it to the left.
+FloorPose seat_on(const World& office,
+                  const std::string& chair,
+                  const Eigen::Vector2d& shift,
+                  double turn) {
   FloorPose seat = floor_pose(thing_named(office, chair).T_world_thing);
-  seat.position = seat.place(ahead, 0.0);
+  seat.position = seat.place(shift.x(), shift.y());
   seat.yaw += turn;
   return seat;
 }
@@ -202,7 +205,7 @@ Role carrier(const World& office) {
 // --- who gets up from chair_1 and comes back ----------------------------------------------------
 
 Role stroller(const World& office) {
-  const FloorPose seat = seat_on(office, "chair_1", -0.03, radians(-95));
+  const FloorPose seat = seat_on(office, "chair_1", {0.02, 0.0}, radians(-95));
   const Eigen::Vector2d feet = seat.place(kSeatToFeet_m, 0.0);
   const double at_seat = radians(-95);
   FloorPath path({{1.45, feet.x(), feet.y(), at_seat},
@@ -210,7 +213,7 @@ Role stroller(const World& office) {
                   {2.6, 1.08, -0.10, radians(-100)},
                   {3.0, 1.12, -0.30, radians(-120), true},
                   {3.9, 1.12, -0.28, radians(-190), true},
-                  {4.9, 0.86, -0.45, radians(-215)},
+                  {4.8, 0.90, -0.12, radians(-215)},
                   {5.6, 0.68, 0.06, radians(-190), true},
                   {6.9, 0.66, 0.10, radians(-175), true},
                   {7.6, 0.95, 0.38, radians(-130)},
@@ -258,9 +261,9 @@ const Thing& thing_named(const World& world, const std::string& name) {
 
 Play sitting_play(const World& office) {
   Play play;
-  play.roles.push_back(talker(seat_on(office, "chair_1", -0.02, radians(-80)), 0.09, 0.1));
+  play.roles.push_back(talker(seat_on(office, "chair_1", {0.05, 0.03}, radians(-72)), 0.09, 0.1));
   play.roles.back().head_yaw = EasedTrack({{0.0, -0.35}});
-  play.roles.push_back(talker(seat_on(office, "chair_2", -0.04, 0.0), 0.20, 0.55));
+  play.roles.push_back(talker(seat_on(office, "chair_2", {-0.04, 0.0}, 0.0), 0.20, 0.55));
   play.roles.back().head_yaw = EasedTrack({{0.0, -0.30}});
   return play;
 }

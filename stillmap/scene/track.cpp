@@ -53,24 +53,25 @@ FloorPath::FloorPath(const std::vector<PathKey>& keys) {
   for (const PathKey& key : keys) {
     knots_.push_back({key.t_s, {key.x, key.y, 0.0}, Vector3d::Zero()});
   }
-  const auto set_rate = [&](std::size_t i, Eigen::Index first, Eigen::Index count) {
+  const auto set_rate = [&](std::size_t i, bool of_yaw) {
     if (rests(i)) return;
     const Knot& a = knots_[i - 1];
     const Knot& c = knots_[i + 1];
     Knot& b = knots_[i];
     const Vector3d rate =
         rate_between(b.value - a.value, b.t_s - a.t_s, c.value - b.value, c.t_s - b.t_s);
-    b.rate.segment(first, count) = rate.segment(first, count);
+    b.rate =
+        of_yaw ? Vector3d(b.rate.x(), b.rate.y(), rate.z()) : Vector3d(rate.x(), rate.y(), 0.0);
   };
   for (std::size_t i = 0; i <= last; ++i) {
     if (i > 0) STILLMAP_CHECK(keys[i - 1].t_s < keys[i].t_s);
     STILLMAP_CHECK(keys[i].yaw.has_value() || !rests(i));
-    set_rate(i, 0, 2);
+    set_rate(i, false);
     const double heading = std::atan2(knots_[i].rate.y(), knots_[i].rate.x());
     knots_[i].value.z() =
         keys[i].yaw ? *keys[i].yaw : nearest_turn(heading, i > 0 ? knots_[i - 1].value.z() : 0.0);
   }
-  for (std::size_t i = 0; i <= last; ++i) set_rate(i, 2, 1);
+  for (std::size_t i = 0; i <= last; ++i) set_rate(i, true);
 }
 
 FloorPose FloorPath::at(double t_s) const {
