@@ -50,8 +50,8 @@ Mesh make_drawers(Painter& painter) {
 }  // namespace
 
 Mesh make_desk(Painter& painter) {
-  const Rgb tone(203, 172, 130);
-  const Surface edge = painter.plain({186, 154, 112}), metal = painter.plain({126, 129, 134});
+  const Rgb tone(190, 158, 116);
+  const Surface edge = painter.plain({172, 140, 100}), metal = painter.plain({126, 129, 134});
   const Surface panel = painter.plain({198, 199, 198});
   BoxSurfaces top = all_faces(edge);
   top[kTop] = painter.picture(wood_picture({1.6, 0.8}, tone, painter.next_seed()));

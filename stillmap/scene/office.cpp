@@ -30,6 +30,7 @@ class OfficeBuilder {
     add_third_desk(placed(-1.75, -1.9, 0, -90));
     add_movables();
     add_floor_things();
+    world_.ambient = 0.5;
     world_.materials = painter_.take_materials();
     return std::move(world_);
   }
@@ -127,7 +128,7 @@ void OfficeBuilder::add_lamps() {
     lamp.center_world = Vector3d(center.x(), center.y(), kHeight - kDrop - 0.005);
     lamp.half_u_world = Vector3d(0.15, 0, 0);
     lamp.half_v_world = Vector3d(0, 0.6, 0);
-    lamp.power = 1.6;
+    lamp.power = 2.4;
     world_.lamps.push_back(lamp);
   }
 }
