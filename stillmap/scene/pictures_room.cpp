@@ -41,7 +41,7 @@ cv::Mat3b plaster_picture(cv::Size2d size_m, PictureSeed seed) {
 
 cv::Mat3b carpet_picture(cv::Size2d size_m, PictureSeed seed) {
   HashStream rng(seed);
-  const Rgb tone(104, 109, 116), light(136, 140, 146), dark(76, 80, 88);
+  const Rgb tone(104, 109, 116), light(130, 136, 144), dark(80, 85, 96);
   Canvas canvas(size_m, 0.006, tone);
   constexpr double kTile = 0.5;
   for (double y = 0; y < size_m.height; y += kTile) {
@@ -60,7 +60,7 @@ cv::Mat3b carpet_picture(cv::Size2d size_m, PictureSeed seed) {
       canvas.outline(tile, 0.006, blend(tone, {60, 64, 72}, 0.5));
     }
   }
-  canvas.noise({0.05, 0.05}, 26.0, rng);
+  canvas.noise({0.05, 0.05}, 20.0, rng);
   const int crumbs = static_cast<int>(4 * size_m.area());
   for (int i = 0; i < crumbs; ++i) {
     const cv::Point2d at(rng.uniform(0, size_m.width), rng.uniform(0, size_m.height));
