@@ -259,6 +259,38 @@ Mesh make_plant(Painter& painter, double height, int leaves) {
   return mesh;
 }
 
+Mesh make_globe(Painter& painter, double radius) {
+  const Surface metal = painter.plain({150, 126, 76}), foot = painter.plain({90, 62, 44});
+  const cv::Size2d size(2.0 * std::numbers::pi * radius, std::numbers::pi * radius);
+  const Surface map = painter.picture(world_map_picture(size, painter.next_seed()));
+  std::vector<ProfilePoint> outline;
+  constexpr int kSteps = 18;
+  for (int i = 0; i <= kSteps; ++i) {
+    const double angle = std::numbers::pi * i / kSteps;
+    const bool pole = i == 0 || i == kSteps;
+    outline.push_back({pole ? 0.0 : radius * std::sin(angle), -radius * std::cos(angle), map});
+  }
+  const double center = radius + 0.06;
+  Mesh mesh = make_lathe({{0, 0, foot},
+                          {0.6 * radius, 0, foot},
+                          {0.6 * radius, 0.012, foot},
+                          {0.015, 0.03, foot},
+                          {0, 0.03, foot}},
+                         24);
+  Eigen::Isometry3d T = placed(0, 0, center);
+  T.rotate(Eigen::AngleAxisd(0.4, Vector3d::UnitX()));
+  mesh.append(make_lathe(outline, 36), T);
+  Tube arc{{}, 0.006, 0.006};
+  for (int i = 0; i <= 12; ++i) {  // from pole to pole
+    const double angle = std::numbers::pi * (i / 12.0 + 0.5) + 0.4;
+    arc.path.emplace_back(
+        0, 1.06 * radius * std::cos(angle), center - 1.06 * radius * std::sin(angle));
+  }
+  mesh.append(make_tube(arc, metal, 8), placed(0, 0, 0));
+  mesh.append(make_tube({{{0, 0, 0.025}, {0, 0, 0.056}}, 0.01, 0.008}, metal, 8), placed(0, 0, 0));
+  return mesh;
+}
+
 Mesh make_coat_stand(Painter& painter) {
   const Surface wood = painter.plain({112, 80, 54});
   HashStream rng(painter.next_seed());
