@@ -13,8 +13,8 @@ namespace {
 
 // Samples of a neighbourhood of 4 x 4 use different rays, so that smoothing over it sees them all.
 constexpr int kPattern = 4;
-constexpr int kRaysPerLamp = 2;
-constexpr int kRaysAround = 2;
+constexpr int kRaysPerLamp = 1;
+constexpr int kRaysAround = 1;
 constexpr float kNearness = 0.6F;  // metres within which things darken corners
 constexpr float kOffSurface = 2e-3F;
 

@@ -37,14 +37,34 @@ struct TrianglePlane {
     dual_v = scale * normal.cross(edge_u);
   }
 
-  // Barycentric coordinates of where a ray meets the plane, not held to the triangle.
-  [[nodiscard]] Eigen::Vector2f meet(const Eigen::Vector3f& origin,
-                                     const Eigen::Vector3f& direction) const {
-    const Eigen::Vector3f offset = origin - corner;
-    const float along = normal.dot(direction);
-    const float t = -normal.dot(offset) / (std::abs(along) > 1e-20F ? along : 1e-20F);
-    const Eigen::Vector3f p = offset + t * direction;
-    return {dual_u.dot(p), dual_v.dot(p)};
+  [[nodiscard]] Eigen::Vector2f coordinates(const Eigen::Vector3f& step) const {
+    return {dual_u.dot(step), dual_v.dot(step)};
+  }
+};
+
+// Where a ray meets a triangle's plane; not held to the triangle.
+struct PlaneMeeting {
+  Eigen::Vector3f direction;
+  float inverse_along;  // 1 / (normal . direction)
+  float t;
+  Eigen::Vector2f at;  // barycentric
+
+  PlaneMeeting(const TrianglePlane& plane,
+               const Eigen::Vector3f& origin,
+               const Eigen::Vector3f& ray_direction)
+      : direction(ray_direction) {
+    const Eigen::Vector3f offset = origin - plane.corner;
+    const float along = plane.normal.dot(direction);
+    inverse_along = 1.F / (std::abs(along) > 1e-20F ? along : 1e-20F);
+    t = -plane.normal.dot(offset) * inverse_along;
+    at = plane.coordinates(offset + t * direction);
+  }
+
+  // How far the meeting moves on the plane, to first order, when the point that the ray had here
+  // moves by `step`.
+  [[nodiscard]] Eigen::Vector2f shift(const TrianglePlane& plane,
+                                      const Eigen::Vector3f& step) const {
+    return plane.coordinates(step - plane.normal.dot(step) * inverse_along * direction);
   }
 };
 
@@ -69,7 +89,7 @@ Eigen::Vector3f point_at(const TrianglePlane& plane, const Eigen::Vector2f& b) {
 }
 
 // The pyramid's level whose texels are as wide as the longest of some steps on the picture.
-float mip_level(const MipTexture& texture, const std::array<Eigen::Vector2f, 3>& steps) {
+float longest_step_level(const MipTexture& texture, const std::array<Eigen::Vector2f, 3>& steps) {
   const Eigen::Vector2f size(static_cast<float>(texture.width()),
                              static_cast<float>(texture.height()));
   float longest = 0.F;
@@ -85,33 +105,42 @@ Eigen::Vector3f to_color(const TexelSum& sum, float scale) {
                                  static_cast<float>(sum[2]));
 }
 
-// Where the rays of a pixel meet a triangle's plane half way through the exposure, and how far the
-// picture moves.
+Eigen::Vector2f uv_step(const SurfaceTriangle& t, const Eigen::Vector2f& b) {
+  return b.x() * (t.uvs[1] - t.uvs[0]) + b.y() * (t.uvs[2] - t.uvs[0]);
+}
+
+// How far the point with barycentric coordinates `b` moves while the shutter is open.
+Eigen::Vector3f surface_motion(const SurfaceTriangle& t, const Eigen::Vector2f& b) {
+  return (1 - b.x() - b.y()) * (t.close[0] - t.open[0]) + b.x() * (t.close[1] - t.open[1]) +
+         b.y() * (t.close[2] - t.open[2]);
+}
+
+// What a pixel covers of a triangle's plane half way through the exposure: its middle on the
+// picture, the steps from one quarter to the next, and how far the picture moves.
 struct Footprint {
   TrianglePlane plane;
-  std::array<Eigen::Vector2f, 4> uvs;
-  Eigen::Vector2f center;  // barycentric
+  PlaneMeeting middle;
+  Eigen::Vector2f across, down;
   Eigen::Vector2f motion = Eigen::Vector2f::Zero();
-  float level = 0.F;
 
-  Footprint(const SurfaceTriangle& triangle,
-            const MipTexture& texture,
-            const MovingCamera& camera,
-            const PixelRays& rays)
-      : plane(triangle, 0.5F) {
-    const Moment& middle = camera.middle;
-    const auto meet = [](const TrianglePlane& at, const Moment& from, const Eigen::Vector3f& ray) {
-      return at.meet(from.origin, from.R_world_camera * ray);
+  Footprint(const SurfaceTriangle& triangle, const MovingCamera& camera, const PixelRays& rays)
+      : plane(triangle, 0.5F),
+        middle(plane, camera.middle.origin, camera.middle.R_world_camera * rays.center) {
+    const Eigen::Matrix3f& R = camera.middle.R_world_camera;
+    const auto step_to = [&](const Eigen::Vector3f& camera_step) {
+      return uv_step(triangle, middle.shift(plane, middle.t * (R * camera_step)));
     };
-    for (std::size_t k = 0; k < 4; ++k) {
-      uvs[k] = uv_at(triangle, meet(plane, middle, rays.quarters[k]));
-    }
-    center = meet(plane, middle, rays.center);
-    if (camera.moves || triangle.moves) {
-      motion = uv_at(triangle, meet(TrianglePlane(triangle, 1.F), camera.close, rays.center)) -
-               uv_at(triangle, meet(TrianglePlane(triangle, 0.F), camera.open, rays.center));
-    }
-    level = mip_level(texture, {uvs[1] - uvs[0], uvs[2] - uvs[0], 0.25F * motion});
+    across = step_to(rays.quarters[1] - rays.quarters[0]);
+    down = step_to(rays.quarters[2] - rays.quarters[0]);
+    if (!camera.moves && !triangle.moves) return;
+    Eigen::Vector3f step = Eigen::Vector3f::Zero();
+    if (camera.moves) step = camera.translation + middle.t * (camera.turn * rays.center);
+    if (triangle.moves) step -= surface_motion(triangle, middle.at);
+    motion = uv_step(triangle, middle.shift(plane, step));
+  }
+
+  [[nodiscard]] float mip_level(const MipTexture& texture) const {
+    return longest_step_level(texture, {across, down, 0.25F * motion});
   }
 };
 
@@ -123,6 +152,8 @@ MovingCamera::MovingCamera(const Exposure& exposure)
              exposure.T_world_camera.translation().cast<float>(),
              0.5F},
       close(moment_at(exposure, 1.0)),
+      translation(close.origin - open.origin),
+      turn(close.R_world_camera - open.R_world_camera),
       moves(exposure.T_world_camera_open.matrix() != exposure.T_world_camera_close.matrix()) {
   // Not in the order of the quarters, so that motion along neither axis meets a pattern.
   constexpr std::array<double, 4> kTimes{0.375, 0.875, 0.125, 0.625};
@@ -136,17 +167,20 @@ SurfacePatch plain_patch(const SurfaceTriangle& triangle,
                          const Material& material,
                          const MovingCamera& camera,
                          const PixelRays& rays) {
-  const Footprint footprint(triangle, material.texture, camera, rays);
+  const Footprint footprint(triangle, camera, rays);
+  const Eigen::Vector2f center = uv_at(triangle, footprint.middle.at);
   std::array<TexturePoint, 4> at;
   for (std::size_t k = 0; k < 4; ++k) {
-    const Eigen::Vector2f uv =
-        footprint.uvs[k] + (camera.quarters[k].time - 0.5F) * footprint.motion;
+    const Eigen::Vector2f uv = center + (k % 2 == 0 ? -0.5F : 0.5F) * footprint.across +
+                               (k < 2 ? -0.5F : 0.5F) * footprint.down +
+                               (camera.quarters[k].time - 0.5F) * footprint.motion;
     at[k] = {uv.x(), uv.y()};
   }
-  const TexelSum sum = material.texture.sample_four(at, footprint.level, material.repeats);
+  const TexelSum sum =
+      material.texture.sample_four(at, footprint.mip_level(material.texture), material.repeats);
   return {to_color(sum, 1.F / (4.F * 256.F)),
-          point_at(footprint.plane, footprint.center),
-          normal_at(triangle, footprint.center, camera.middle.R_world_camera * rays.center)};
+          point_at(footprint.plane, footprint.middle.at),
+          normal_at(triangle, footprint.middle.at, footprint.middle.direction)};
 }
 
 SurfacePatch quarter_patch(const SurfaceTriangle& triangle,
@@ -154,15 +188,16 @@ SurfacePatch quarter_patch(const SurfaceTriangle& triangle,
                            const MovingCamera& camera,
                            const PixelRays& rays,
                            std::size_t quarter) {
-  const Footprint footprint(triangle, material.texture, camera, rays);
+  const Footprint footprint(triangle, camera, rays);
   const Moment& moment = camera.quarters[quarter];
   const TrianglePlane plane(triangle, moment.time);
-  const Eigen::Vector3f direction = moment.R_world_camera * rays.quarters[quarter];
-  const Eigen::Vector2f b = plane.meet(moment.origin, direction);
-  const Eigen::Vector2f uv = uv_at(triangle, b);
-  const TexelSum texel =
-      material.texture.sample({uv.x(), uv.y()}, footprint.level, material.repeats);
-  return {to_color(texel, 1.F / 256.F), point_at(plane, b), normal_at(triangle, b, direction)};
+  const PlaneMeeting meeting(plane, moment.origin, moment.R_world_camera * rays.quarters[quarter]);
+  const Eigen::Vector2f uv = uv_at(triangle, meeting.at);
+  const TexelSum texel = material.texture.sample(
+      {uv.x(), uv.y()}, footprint.mip_level(material.texture), material.repeats);
+  return {to_color(texel, 1.F / 256.F),
+          point_at(plane, meeting.at),
+          normal_at(triangle, meeting.at, meeting.direction)};
 }
 
 Eigen::Vector3f lit(const Eigen::Vector3f& albedo, const Material& material, float light) {

@@ -28,6 +28,8 @@ class MovingCamera {
   /// The four times at which a pixel's quarters are taken, spread over the exposure.
   std::array<Moment, 4> quarters;
   Moment open, middle, close;
+  Eigen::Vector3f translation;  ///< from open to close
+  Eigen::Matrix3f turn;         ///< the difference of the axes
   bool moves = false;
 };
 

@@ -28,8 +28,10 @@ class Choreography {
   [[nodiscard]] WorldState at(double t_s) const;
 
  private:
+  struct Cast;
+
   const World* office_;
-  Activity activity_;
+  std::shared_ptr<const Cast> cast_;
 };
 
 }  // namespace stillmap

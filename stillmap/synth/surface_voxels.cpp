@@ -99,7 +99,7 @@ SurfaceVoxels::Block& SurfaceVoxels::block_at(std::uint64_t key) {
 
 void SurfaceVoxels::add(const Eigen::Vector3f& position, const Rgb& color) {
   const Eigen::Vector3f scaled = position * voxels_a_metre_;
-  STILLMAP_CHECK(scaled.cwiseAbs().maxCoeff() < static_cast<float>(kHalfRange));
+  STILLMAP_CHECK((scaled.array().abs() < static_cast<float>(kHalfRange)).all());
   const Cell cell = cell_of(scaled);
   const Eigen::Vector3f center = cell.cast<float>() + Eigen::Vector3f::Constant(0.5F);
   const float distance = (scaled - center).squaredNorm();
