@@ -85,10 +85,10 @@ Mesh make_chair(Painter& painter, const cv::Vec3b& tone, bool armrests) {
   mesh.append(make_box({0.4, 0.4, 0.02}, all_faces(plastic), {0.006}), placed(0, 0, 0.375));
   // The backrest: its sides come forward, and it leans back a little at the top.
   constexpr double kBackHeight = 0.42;
-  BoxSurfaces back = all_faces(back_cloth);
-  const Mesh rest = bent(make_box({0.055, 0.42, kBackHeight}, back, {0.027, 4, 6}), {0.9, -0.35});
-  mesh.append(rest, placed(-0.245, 0, 0.92 - kBackHeight));
-  mesh.append(make_box({0.012, 0.3, 0.3}, all_faces(plastic), {0.005}), placed(-0.282, 0, 0.55));
+  Mesh rest = make_box({0.055, 0.42, kBackHeight}, all_faces(back_cloth), {0.027, 4, 6});
+  rest.append(make_box({0.03, 0.36, 0.34}, all_faces(plastic), {0.012, 2, 6}),
+              placed(-0.022, 0, 0.04));
+  mesh.append(bent(rest, {0.9, -0.35}), placed(-0.245, 0, 0.92 - kBackHeight));
   mesh.append(
       make_tube({{{-0.08, 0, 0.37}, {-0.25, 0, 0.375}, {-0.295, 0, 0.42}, {-0.292, 0, 0.72}},
                  0.02,

@@ -40,6 +40,7 @@ struct ShelfSize {
 [[nodiscard]] Mesh make_waste_bin(Painter& painter);
 [[nodiscard]] Mesh make_carton(Painter& painter, const Eigen::Vector3d& size);
 [[nodiscard]] Mesh make_plant(Painter& painter, double height, int leaves);
+[[nodiscard]] Mesh make_globe(Painter& painter, double radius);
 [[nodiscard]] Mesh make_coat_stand(Painter& painter);
 [[nodiscard]] Mesh make_printer(Painter& painter);  ///< its front towards -x
 

@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kMinusX = 1, kPlusY = 2, kTop = 4, kBottom = 5;
+constexpr std::size_t kPlusX = 0, kMinusX = 1, kPlusY = 2, kTop = 4;
 
 BoxSurfaces with(const Surface& all, std::size_t face, const Surface& other) {
   BoxSurfaces surfaces = all_faces(all);
@@ -50,9 +50,12 @@ Mesh make_drawers(Painter& painter) {
 }  // namespace
 
 Mesh make_desk(Painter& painter) {
-  const Rgb tone(203, 172, 130);
-  const Surface edge = painter.plain({186, 154, 112}), metal = painter.plain({126, 129, 134});
-  const Surface panel = painter.plain({198, 199, 198});
+  const Rgb tone(190, 158, 116);
+  const Surface edge = painter.plain({172, 140, 100}), metal = painter.plain({126, 129, 134});
+  BoxSurfaces panel = all_faces(edge);
+  for (const std::size_t face : {kPlusX, kMinusX}) {
+    panel[face] = painter.picture(wood_picture({1.42, 0.36}, tone, painter.next_seed()));
+  }
   BoxSurfaces top = all_faces(edge);
   top[kTop] = painter.picture(wood_picture({1.6, 0.8}, tone, painter.next_seed()));
   Mesh mesh;
@@ -62,7 +65,7 @@ Mesh make_desk(Painter& painter) {
     mesh.append(make_box({0.08, 0.04, 0.64}, all_faces(metal), {0.006}), placed(0.1, y, 0.03));
     mesh.append(make_box({0.6, 0.04, 0.03}, all_faces(metal), {0.004}), placed(0, y, 0.67));
   }
-  mesh.append(make_box({0.018, 1.42, 0.36}, all_faces(panel), {0.003}), placed(0.3, 0, 0.31));
+  mesh.append(make_box({0.018, 1.42, 0.36}, panel, {0.003}), placed(0.3, 0, 0.31));
   mesh.append(make_box({0.03, 1.44, 0.04}, all_faces(metal)), placed(0.1, 0, 0.655));
   mesh.append(make_drawers(painter), placed(0.0, -0.5, 0.04));
   return mesh;

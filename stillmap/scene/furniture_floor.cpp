@@ -55,6 +55,30 @@ Mesh make_leaf(const Leaf& leaf, const Surface& green) {
   return make_sheet({place, 4, 9, 0.002}, green, green);
 }
 
+// A jacket on a hook at about x = 0.1, z = 1.62: a body with folds, sleeves, a collar.
+Mesh make_jacket(const Surface& cloth) {
+  const auto place = [](double u, double v) {
+    const double angle = 2.0 * std::numbers::pi * u * 0.98;
+    const double fold = 1.0 + 0.1 * v * std::sin(7.0 * angle) + 0.05 * std::sin(3.0 * angle);
+    const double r = std::min(0.05 + 0.9 * v, 0.15 + 0.05 * v) * fold;
+    return Vector3d(0.09 + 0.55 * r * std::cos(angle), r * std::sin(angle), 1.64 - 0.72 * v);
+  };
+  Mesh mesh = make_sheet({place, 48, 24, 0.006}, cloth, cloth);
+  for (const double side : {-1.0, 1.0}) {
+    const Tube sleeve{{{0.09, side * 0.1, 1.53},
+                       {0.1, side * 0.175, 1.44},
+                       {0.12, side * 0.2, 1.2},
+                       {0.14, side * 0.19, 0.98}},
+                      0.06,
+                      0.042};
+    mesh.append(make_tube(sleeve, cloth, 14), placed(0, 0, 0));
+  }
+  mesh.append(
+      make_lathe({{0, 0, cloth}, {0.075, 0, cloth}, {0.06, 0.06, cloth}, {0, 0.055, cloth}}, 20),
+      placed(0.09, 0, 1.6));
+  return mesh;
+}
+
 }  // namespace
 
 Mesh make_shelf(Painter& painter, const ShelfSize& size) {
@@ -235,6 +259,38 @@ Mesh make_plant(Painter& painter, double height, int leaves) {
   return mesh;
 }
 
+Mesh make_globe(Painter& painter, double radius) {
+  const Surface metal = painter.plain({150, 126, 76}), foot = painter.plain({90, 62, 44});
+  const cv::Size2d size(2.0 * std::numbers::pi * radius, std::numbers::pi * radius);
+  const Surface map = painter.picture(world_map_picture(size, painter.next_seed()));
+  std::vector<ProfilePoint> outline;
+  constexpr int kSteps = 18;
+  for (int i = 0; i <= kSteps; ++i) {
+    const double angle = std::numbers::pi * i / kSteps;
+    const bool pole = i == 0 || i == kSteps;
+    outline.push_back({pole ? 0.0 : radius * std::sin(angle), -radius * std::cos(angle), map});
+  }
+  const double center = radius + 0.06;
+  Mesh mesh = make_lathe({{0, 0, foot},
+                          {0.6 * radius, 0, foot},
+                          {0.6 * radius, 0.012, foot},
+                          {0.015, 0.03, foot},
+                          {0, 0.03, foot}},
+                         24);
+  Eigen::Isometry3d T = placed(0, 0, center);
+  T.rotate(Eigen::AngleAxisd(0.4, Vector3d::UnitX()));
+  mesh.append(make_lathe(outline, 36), T);
+  Tube arc{{}, 0.006, 0.006};
+  for (int i = 0; i <= 12; ++i) {  // from pole to pole
+    const double angle = std::numbers::pi * (i / 12.0 + 0.5) + 0.4;
+    arc.path.emplace_back(
+        0, 1.06 * radius * std::cos(angle), center - 1.06 * radius * std::sin(angle));
+  }
+  mesh.append(make_tube(arc, metal, 8), placed(0, 0, 0));
+  mesh.append(make_tube({{{0, 0, 0.025}, {0, 0, 0.056}}, 0.01, 0.008}, metal, 8), placed(0, 0, 0));
+  return mesh;
+}
+
 Mesh make_coat_stand(Painter& painter) {
   const Surface wood = painter.plain({112, 80, 54});
   HashStream rng(painter.next_seed());
@@ -253,14 +309,7 @@ Mesh make_coat_stand(Painter& painter) {
             8),
         placed(0, 0, 0));
   }
-  // A jacket: a hanging cone with folds.
-  const auto place = [](double u, double v) {
-    const double angle = 2.0 * std::numbers::pi * u * 0.995;
-    const double fold = 1.0 + 0.16 * v * std::sin(7.0 * angle) + 0.05 * std::sin(3.0 * angle);
-    const double r = (0.03 + 0.17 * std::sqrt(v)) * fold;
-    return Vector3d(0.1 + 0.7 * r * std::cos(angle), r * std::sin(angle), 1.62 - 0.75 * v);
-  };
-  mesh.append(make_sheet({place, 48, 14, 0.006}, cloth, cloth), placed(0, 0, 0, 17.0));
+  mesh.append(make_jacket(cloth), placed(0, 0, 0, 17.0));
   return mesh;
 }
 

@@ -116,7 +116,7 @@ Mesh make_radiator(Painter& painter, double width) {
   }
   for (const double z : {0.15, 0.62}) {
     const Tube pipe{
-        {{-0.07, -0.5 * width, z}, {-0.07, 0.5 * width + 0.06, z}, {-0.01, 0.5 * width + 0.08, z}},
+        {{-0.07, -0.5 * width, z}, {-0.07, 0.5 * width + 0.06, z}, {-0.02, 0.5 * width + 0.08, z}},
         0.012,
         0.012};
     mesh.append(make_tube(pipe, white, 8), placed(0, 0, 0));

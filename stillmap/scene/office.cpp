@@ -30,6 +30,7 @@ class OfficeBuilder {
     add_third_desk(placed(-1.75, -1.9, 0, -90));
     add_movables();
     add_floor_things();
+    world_.ambient = 0.5;
     world_.materials = painter_.take_materials();
     return std::move(world_);
   }
@@ -92,6 +93,7 @@ class OfficeBuilder {
   void add_third_desk(const Isometry3d& T_world_desk);
   void add_movables();
   void add_floor_things();
+  void add_low_shelf(const Isometry3d& T_world_shelf);
 
   Painter painter_;
   World world_;
@@ -127,7 +129,7 @@ void OfficeBuilder::add_lamps() {
     lamp.center_world = Vector3d(center.x(), center.y(), kHeight - kDrop - 0.005);
     lamp.half_u_world = Vector3d(0.15, 0, 0);
     lamp.half_v_world = Vector3d(0, 0.6, 0);
-    lamp.power = 1.6;
+    lamp.power = 2.4;
     world_.lamps.push_back(lamp);
   }
 }
@@ -168,7 +170,7 @@ void OfficeBuilder::add_south_wall() {
   add("poster", science_poster({0.7, 1.0}), on_south(0.45, 0.95));
   add("poster", framed_abstract({0.55, 0.7}, {196, 170, 130}), on_south(1.25, 1.35), "picture");
   add("poster", framed_landscape({0.4, 0.5}, {230, 228, 222}), on_south(2.0, 1.4), "picture");
-  add("socket", socket(3), on_south(-0.2, 0.28));
+  add("socket", socket(3), on_south(-0.9, 0.28));
 }
 
 void OfficeBuilder::add_first_desk(const Isometry3d& T_world_desk) {
@@ -258,6 +260,7 @@ void OfficeBuilder::add_floor_things() {
       T_world_shelf * placed(-0.05, 0.01, board(4), -5),
       "archive_box");
   add("book", make_book_stack(painter_, 5), T_world_shelf * placed(0.42, 0, board(4), 70));
+  add_low_shelf(placed(-0.15, -2.83, 0, 180));
   add("cabinet", make_cabinet(painter_, {0.45, 0.8, 0.75}), placed(1.2, -2.72, 0, -90));
   add("cabinet", make_cabinet(painter_, {0.45, 0.9, 0.8}), placed(-2.74, -0.3, 0, 180));
   add("printer", make_printer(painter_), placed(-2.72, -0.15, 0.8, 180));
@@ -267,6 +270,19 @@ void OfficeBuilder::add_floor_things() {
   add("trash can", make_waste_bin(painter_), placed(-0.72, -2.1, 0, 0));
   add("potted plant", make_plant(painter_, 1.25, 30), placed(2.55, -2.6, 0, 20));
   add("coat stand", make_coat_stand(painter_), placed(-2.62, 2.3, 0, -40));
+}
+
+void OfficeBuilder::add_low_shelf(const Isometry3d& T_world_shelf) {
+  const ShelfSize size{0.84, 0.3, 0.82, 3};
+  add("shelf", make_shelf(painter_, size), T_world_shelf);
+  add("book",
+      make_book_row(painter_, 0.72, 91),
+      T_world_shelf * placed(-0.38, 0.0, 0.085),
+      "books");
+  add("book", make_book_row(painter_, 0.5, 92), T_world_shelf * placed(-0.38, 0.0, 0.45), "books");
+  add("cup", make_mug(painter_), T_world_shelf * placed(0.3, 0, 0.45, 60));
+  add("globe", make_globe(painter_, 0.13), T_world_shelf * placed(0.22, 0, 0.815, 0));
+  add("book", make_book_stack(painter_, 3), T_world_shelf * placed(-0.22, 0, 0.815, 80));
 }
 
 }  // namespace

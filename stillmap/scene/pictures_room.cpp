@@ -41,25 +41,26 @@ cv::Mat3b plaster_picture(cv::Size2d size_m, PictureSeed seed) {
 
 cv::Mat3b carpet_picture(cv::Size2d size_m, PictureSeed seed) {
   HashStream rng(seed);
-  const Rgb tone(101, 108, 120);
+  const Rgb tone(104, 109, 116), light(130, 136, 144), dark(80, 85, 96);
   Canvas canvas(size_m, 0.006, tone);
   constexpr double kTile = 0.5;
   for (double y = 0; y < size_m.height; y += kTile) {
     for (double x = 0; x < size_m.width; x += kTile) {
       const cv::Rect2d tile(x, y, kTile, kTile);
-      canvas.fill(tile, near_color(rng.below(9) == 0 ? Rgb(120, 122, 124) : tone, 7, rng));
+      canvas.fill(tile, blend(tone, rng.below(2) == 0 ? light : dark, rng.uniform(0, 0.3)));
       const bool across = rng.below(2) == 0;
       for (int i = 0; i < 26; ++i) {  // stripes of the pile
         const double at = rng.uniform(0, kTile - 0.02), from = rng.uniform(0, 0.3);
         const double length = rng.uniform(0.08, kTile - from);
         const cv::Rect2d stripe = across ? cv::Rect2d(x + from, y + at, length, 0.012)
                                          : cv::Rect2d(x + at, y + from, 0.012, length);
-        canvas.fill(stripe & tile, near_color(tone, 20, rng));
+        canvas.fill(stripe & tile,
+                    blend(tone, rng.below(2) == 0 ? light : dark, rng.uniform(0.1, 0.6)));
       }
       canvas.outline(tile, 0.006, blend(tone, {60, 64, 72}, 0.5));
     }
   }
-  canvas.noise({0.05, 0.05}, 26.0, rng);
+  canvas.noise({0.05, 0.05}, 20.0, rng);
   const int crumbs = static_cast<int>(4 * size_m.area());
   for (int i = 0; i < crumbs; ++i) {
     const cv::Point2d at(rng.uniform(0, size_m.width), rng.uniform(0, size_m.height));

@@ -176,7 +176,7 @@ cv::Mat3b phone_picture(cv::Size2d size_m, PictureSeed seed) {
 cv::Mat3b paper_picture(cv::Size2d size_m, PictureSeed seed) {
   HashStream rng(seed);
   const double w = size_m.width, h = size_m.height;
-  Canvas canvas(size_m, 0.0022, {247, 246, 241});
+  Canvas canvas(size_m, 0.0022, {233, 232, 227});
   canvas.text(random_words(2, rng), {0.1 * w, 0.06 * h, 0.7 * w, 0.05 * h}, {30, 30, 34});
   const double split = h * rng.uniform(0.35, 0.6);
   canvas.small_print({0.1 * w, 0.14 * h, 0.8 * w, split - 0.16 * h}, 0.011, {60, 60, 64}, rng);

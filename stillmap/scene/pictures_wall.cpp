@@ -124,7 +124,8 @@ cv::Mat3b world_map_picture(cv::Size2d size_m, PictureSeed seed) {
                                            {0.5, 0.97, 0.44, 0.05}};
   for (const cv::Rect2d& c : continents) {
     const cv::Point2d center(c.x * w, c.y * h);
-    canvas.polygon(ragged_blob(center, {c.width * w, c.height * h}, rng), pick(lands, rng));
+    canvas.polygon(ragged_blob(center, {1.2 * c.width * w, 1.15 * c.height * h}, rng),
+                   pick(lands, rng));
     for (int country = 0; country < 8; ++country) {
       const cv::Point2d at(center.x + c.width * w * rng.uniform(-0.5, 0.5),
                            center.y + c.height * h * rng.uniform(-0.5, 0.5));

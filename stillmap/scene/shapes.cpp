@@ -77,6 +77,34 @@ Vector2d uv_on(const Surface& surface, const Vector2d& place, const Vector2d& si
   return surface.tile_m > 0 ? Vector2d(place / surface.tile_m) : place.cwiseQuotient(size);
 }
 
+// Joins the edges of a sheet's front, which comes first, and back: once around the front,
+// counter-clockwise as seen from there.
+void add_rim(Mesh& mesh, int columns, int rows, MaterialId material) {
+  std::vector<std::array<int, 2>> rim;
+  for (int i = 0; i < rows; ++i) rim.push_back({0, i});
+  for (int i = 0; i < columns; ++i) rim.push_back({i, rows});
+  for (int i = rows; i > 0; --i) rim.push_back({columns, i});
+  for (int i = columns; i > 0; --i) rim.push_back({i, 0});
+  const auto index = [&](const std::array<int, 2>& place, bool on_front) {
+    const int column = on_front ? place[0] : columns - place[0];
+    const int half = on_front ? 0 : (rows + 1) * (columns + 1);
+    return static_cast<std::size_t>(half + place[1] * (columns + 1) + column);
+  };
+  for (std::size_t i = 0; i < rim.size(); ++i) {
+    const std::array<int, 2>&here = rim[i], &next = rim[(i + 1) % rim.size()];
+    const std::array<std::size_t, 4> quad{
+        index(here, true), index(next, true), index(here, false), index(next, false)};
+    const Vector3d along = (mesh.positions[quad[1]] - mesh.positions[quad[0]]).cast<double>();
+    const Vector3d across = (mesh.positions[quad[0]] - mesh.positions[quad[2]]).cast<double>();
+    const std::uint32_t first = static_cast<std::uint32_t>(mesh.positions.size());
+    for (const std::size_t corner : quad) {
+      add_corner(mesh, mesh.positions[corner].cast<double>(), along.cross(across), {0, 0});
+    }
+    add_triangle(mesh, {first, first + 2, first + 3}, material);
+    add_triangle(mesh, {first, first + 3, first + 1}, material);
+  }
+}
+
 }  // namespace
 
 BoxSurfaces all_faces(const Surface& surface) {
@@ -156,8 +184,9 @@ Mesh make_sheet(const Sheet& sheet, const Surface& front, const Surface& back) {
     const Vector3d down = at(column, std::min(row + 1, rows)) - at(column, std::max(row - 1, 0));
     return Vector3d(down.cross(right).normalized());
   };
-  const Vector2d extent((at(columns, rows / 2) - at(0, rows / 2)).norm(),
-                        (at(columns / 2, rows) - at(columns / 2, 0)).norm());
+  Vector2d extent = Vector2d::Zero();  // along the middle lines
+  for (int i = 0; i < columns; ++i) extent.x() += (at(i + 1, rows / 2) - at(i, rows / 2)).norm();
+  for (int i = 0; i < rows; ++i) extent.y() += (at(columns / 2, i + 1) - at(columns / 2, i)).norm();
   Mesh mesh;
   for (const double side : {1.0, -1.0}) {
     const Surface& surface = side > 0 ? front : back;
@@ -175,30 +204,7 @@ Mesh make_sheet(const Sheet& sheet, const Surface& front, const Surface& back) {
     }
     add_grid(mesh, first, columns, rows, surface.material);
   }
-  // The rim: once around the front's edge, counter-clockwise as seen from the front.
-  std::vector<std::array<int, 2>> rim;
-  for (int i = 0; i < rows; ++i) rim.push_back({0, i});
-  for (int i = 0; i < columns; ++i) rim.push_back({i, rows});
-  for (int i = rows; i > 0; --i) rim.push_back({columns, i});
-  for (int i = columns; i > 0; --i) rim.push_back({i, 0});
-  const auto index = [&](const std::array<int, 2>& place, bool on_front) {
-    const int column = on_front ? place[0] : columns - place[0];
-    const int half = on_front ? 0 : (rows + 1) * (columns + 1);
-    return static_cast<std::size_t>(half + place[1] * (columns + 1) + column);
-  };
-  for (std::size_t i = 0; i < rim.size(); ++i) {
-    const std::array<int, 2>&here = rim[i], &next = rim[(i + 1) % rim.size()];
-    const std::array<std::size_t, 4> quad{
-        index(here, true), index(next, true), index(here, false), index(next, false)};
-    const Vector3d along = (mesh.positions[quad[1]] - mesh.positions[quad[0]]).cast<double>();
-    const Vector3d across = (mesh.positions[quad[0]] - mesh.positions[quad[2]]).cast<double>();
-    const std::uint32_t first = static_cast<std::uint32_t>(mesh.positions.size());
-    for (const std::size_t corner : quad) {
-      add_corner(mesh, mesh.positions[corner].cast<double>(), along.cross(across), {0, 0});
-    }
-    add_triangle(mesh, {first, first + 2, first + 3}, back.material);
-    add_triangle(mesh, {first, first + 3, first + 1}, back.material);
-  }
+  add_rim(mesh, columns, rows, back.material);
   return mesh;
 }
 
