@@ -50,8 +50,9 @@ std::uint32_t spell_of(FrameId frame, int object) {
   return (frame.value + 3U * static_cast<std::uint32_t>(object)) / kSpellFrames;
 }
 
+// Independent of the numbers that a stream of the same key gives.
 bool happens(std::uint64_t key, double chance) {
-  return static_cast<double>(hash_uniform(mix_bits(key))) < chance;
+  return static_cast<double>(hash_uniform(~key)) < chance;
 }
 
 double scale_of(cv::Size image) {

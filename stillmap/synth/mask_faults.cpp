@@ -43,17 +43,25 @@ cv::Mat1b with_wandering_edge(const cv::Mat1b& mask,
                               double loss_px,
                               double wander_px,
                               std::uint64_t key) {
+  cv::Mat1b moved(mask.size(), std::uint8_t{0});
+  const cv::Rect box = cv::boundingRect(mask);
+  if (box.empty()) return moved;
+  const int reach = static_cast<int>(std::ceil(std::max(wander_px - loss_px, 0.0))) + 2;
+  const cv::Rect room =
+      cv::Rect(box.x - reach, box.y - reach, box.width + 2 * reach, box.height + 2 * reach) &
+      cv::Rect(cv::Point(0, 0), mask.size());
+  const cv::Mat1b before = mask(room);
+  cv::Mat1b after = moved(room);
   cv::Mat1f inside, outside;
-  cv::distanceTransform(mask, inside, cv::DIST_L2, cv::DIST_MASK_5);
-  cv::distanceTransform(~mask, outside, cv::DIST_L2, cv::DIST_MASK_5);
-  const cv::Mat1f waves = slow_waves(mask.size(), key);
-  cv::Mat1b moved(mask.size());
-  for (int v = 0; v < mask.rows; ++v) {
-    for (int u = 0; u < mask.cols; ++u) {
-      // Half a pixel on either side of the edge itself.
-      const float depth = mask(v, u) != 0 ? inside(v, u) - 0.5F : 0.5F - outside(v, u);
-      const double limit = loss_px + wander_px * static_cast<double>(waves(v, u));
-      moved(v, u) = static_cast<double>(depth) > limit ? 255 : 0;
+  cv::distanceTransform(before, inside, cv::DIST_L2, cv::DIST_MASK_5);
+  cv::distanceTransform(~before, outside, cv::DIST_L2, cv::DIST_MASK_5);
+  const cv::Mat1f waves = slow_waves(room.size(), key);
+  const float loss = static_cast<float>(loss_px), wander = static_cast<float>(wander_px);
+  for (int v = 0; v < room.height; ++v) {
+    for (int u = 0; u < room.width; ++u) {
+      // The edge runs half a pixel from the centres on either side of it.
+      const float depth = before(v, u) != 0 ? inside(v, u) - 0.5F : 0.5F - outside(v, u);
+      after(v, u) = depth > loss + wander * waves(v, u) ? 255 : 0;
     }
   }
   return moved;
