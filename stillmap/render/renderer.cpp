@@ -53,15 +53,11 @@ class Painter {
     return in_light(patch, material, lighting_->openness_at(x, y, surfel));
   }
 
-  // A pixel that may show several.
-  [[nodiscard]] Eigen::Vector3f mixed(int x, int y, const PixelRays& rays) const {
-    std::array<Ray, 4> quarter_rays;
-    for (std::size_t k = 0; k < 4; ++k) {
-      const MovingCamera::Moment& moment = camera_->quarters[k];
-      quarter_rays[k] = {
-          moment.origin, moment.R_world_camera * rays.quarters[k], moment.time, 1e9F};
-    }
-    const std::array<SurfaceHit, kRays> hits = scene_->first_hits(quarter_rays);
+  // A pixel whose quarters show what `hits` says.
+  [[nodiscard]] Eigen::Vector3f mixed(int x,
+                                      int y,
+                                      const PixelRays& rays,
+                                      const std::array<SurfaceHit, 4>& hits) const {
     Eigen::Vector3f sum = Eigen::Vector3f::Zero();
     for (std::size_t k = 0; k < 4; ++k) {
       if (!hits[k].valid()) continue;
@@ -94,6 +90,49 @@ PixelRays without_extent(PixelRays rays) {
   return rays;
 }
 
+// What the quarters of some pixels show. Rays of one moment and of neighbouring pixels are traced
+// together: they take much the same way through the world.
+std::vector<std::array<SurfaceHit, 4>> trace_quarters(const RayScene& scene,
+                                                      const MovingCamera& camera,
+                                                      const cv::Mat2f& quarter_rays,
+                                                      const std::vector<cv::Point>& pixels) {
+  std::vector<std::array<SurfaceHit, 4>> hits(pixels.size());
+  for (std::size_t k = 0; k < 4; ++k) {
+    const MovingCamera::Moment& moment = camera.quarters[k];
+    const int dx = static_cast<int>(k % 2), dy = static_cast<int>(k / 2);
+    for (std::size_t first = 0; first < pixels.size(); first += kRays) {
+      const std::size_t count = std::min(kRays, pixels.size() - first);
+      std::array<Ray, kRays> packet;
+      for (std::size_t i = 0; i < count; ++i) {
+        const cv::Point& p = pixels[first + i];
+        packet[i].origin = moment.origin;
+        packet[i].direction =
+            moment.R_world_camera * ray_of(quarter_rays(2 * p.y + dy, 2 * p.x + dx));
+        packet[i].time = moment.time;
+      }
+      const std::array<SurfaceHit, kRays> found = scene.first_hits({packet.data(), count});
+      for (std::size_t i = 0; i < count; ++i) hits[first + i][k] = found[i];
+    }
+  }
+  return hits;
+}
+
+// The pixels that a mask marks, those of small blocks together.
+std::vector<cv::Point> marked_pixels(const cv::Mat1b& mask) {
+  constexpr int kBlock = 4;
+  std::vector<cv::Point> pixels;
+  for (int top = 0; top < mask.rows; top += kBlock) {
+    for (int left = 0; left < mask.cols; left += kBlock) {
+      for (int y = top; y < std::min(top + kBlock, mask.rows); ++y) {
+        for (int x = left; x < std::min(left + kBlock, mask.cols); ++x) {
+          if (mask(y, x) != 0) pixels.emplace_back(x, y);
+        }
+      }
+    }
+  }
+  return pixels;
+}
+
 }  // namespace
 
 Renderer::Renderer(std::shared_ptr<const World> world,
@@ -105,11 +144,18 @@ Renderer::Renderer(std::shared_ptr<const World> world,
       rays_(pixel_rays(camera)),
       quarter_rays_(pixel_rays(with_quartered_pixels(camera))) {}
 
+PixelRays Renderer::pixel_rays_at(int x, int y) const {
+  const cv::Vec2f* upper = quarter_rays_.ptr<cv::Vec2f>(2 * y) + 2 * x;
+  const cv::Vec2f* lower = quarter_rays_.ptr<cv::Vec2f>(2 * y + 1) + 2 * x;
+  const PixelRays rays{ray_of(rays_(y, x)),
+                       {ray_of(upper[0]), ray_of(upper[1]), ray_of(lower[0]), ray_of(lower[1])}};
+  return options_.antialiasing ? rays : without_extent(rays);
+}
+
 RenderedImage Renderer::render(const Exposure& exposure) const {
   const World& world = geometry_.world();
   const RayScene scene(geometry_, exposure);
   const SurfaceBuffer surfaces = trace_surfaces(scene, exposure.T_world_camera, rays_);
-  const cv::Mat1b mixed = mixed_pixels(surfaces, scene, exposure, focal_length_px_);
   const Lighting lighting(scene, world, surfaces, options_.light);
   const MovingCamera camera(exposure);
   const Painter painter(world, scene, surfaces, lighting, camera);
@@ -117,23 +163,26 @@ RenderedImage Renderer::render(const Exposure& exposure) const {
   RenderedImage image{ColorImage(cv::Mat3b(rays_.size())),
                       DepthImage(cv::Mat1f(rays_.size())),
                       cv::Mat1b(rays_.size())};
+  const auto set_color = [&](int x, int y, const Eigen::Vector3f& color) {
+    image.color.mat(y, x) = {to_byte(color[0]), to_byte(color[1]), to_byte(color[2])};
+  };
+  const cv::Mat1b mixed = options_.antialiasing
+                              ? mixed_pixels(surfaces, scene, exposure, focal_length_px_)
+                              : cv::Mat1b::zeros(rays_.size());
   for (int y = 0; y < rays_.rows; ++y) {
-    const cv::Vec2f* upper = quarter_rays_.ptr<cv::Vec2f>(2 * y);
-    const cv::Vec2f* lower = quarter_rays_.ptr<cv::Vec2f>(2 * y + 1);
     for (int x = 0; x < rays_.cols; ++x) {
-      const Surfel& surfel = surfaces.at(x, y);
-      image.depth.mat(y, x) = surfel.hit.t;
-      image.ids(y, x) = surfel.hit.valid() ? scene.mask_id(surfel.hit.object) : std::uint8_t{0};
-      PixelRays rays{ray_of(rays_(y, x)),
-                     {ray_of(upper[2 * x]),
-                      ray_of(upper[2 * x + 1]),
-                      ray_of(lower[2 * x]),
-                      ray_of(lower[2 * x + 1])}};
-      const bool several = options_.antialiasing && mixed(y, x) != 0;
-      if (!options_.antialiasing) rays = without_extent(rays);
-      const Eigen::Vector3f color = several ? painter.mixed(x, y, rays) : painter.plain(x, y, rays);
-      image.color.mat(y, x) = {to_byte(color[0]), to_byte(color[1]), to_byte(color[2])};
+      const SurfaceHit& hit = surfaces.at(x, y).hit;
+      image.depth.mat(y, x) = hit.t;
+      image.ids(y, x) = hit.valid() ? scene.mask_id(hit.object) : std::uint8_t{0};
+      if (mixed(y, x) == 0) set_color(x, y, painter.plain(x, y, pixel_rays_at(x, y)));
     }
+  }
+  const std::vector<cv::Point> pixels = marked_pixels(mixed);
+  const std::vector<std::array<SurfaceHit, 4>> hits =
+      trace_quarters(scene, camera, quarter_rays_, pixels);
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const cv::Point& p = pixels[i];
+    set_color(p.x, p.y, painter.mixed(p.x, p.y, pixel_rays_at(p.x, p.y), hits[i]));
   }
   return image;
 }

@@ -9,6 +9,7 @@
 #include "stillmap/core/images.hpp"
 #include "stillmap/render/lighting.hpp"
 #include "stillmap/render/ray_scene.hpp"
+#include "stillmap/render/shading.hpp"
 
 namespace stillmap {
 
@@ -38,6 +39,8 @@ class Renderer {
   [[nodiscard]] RenderedImage render(const Exposure& exposure) const;
 
  private:
+  [[nodiscard]] PixelRays pixel_rays_at(int x, int y) const;
+
   WorldGeometry geometry_;
   RenderOptions options_;
   float focal_length_px_;
