@@ -21,7 +21,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kLetsGo_s = 5.0;
-constexpr double kPut_s = 8.05;
+constexpr double kPut_s = 8.2;
 
 // An office with people, built once.
 struct Staged {
