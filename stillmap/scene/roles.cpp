@@ -42,7 +42,7 @@ constexpr double kLetsGo_s = 5.0;
 ThingMotion pushed_chair(const Isometry3d& T_world_first) {
   const FloorPose first = floor_pose(T_world_first);
   const FloorPath path({{1.0, first.position.x(), first.position.y(), first.yaw},
-                        {1.8, 0.74, -1.50, radians(100)},
+                        {1.8, 0.72, -1.52, radians(92)},
                         {2.6, 0.62, -0.54, radians(92)},
                         {3.4, 0.61, 0.42, radians(90)},
                         {4.2, 0.59, 1.42, radians(92)},
@@ -70,10 +70,10 @@ Role pusher(const World& office) {
                   behind(4.2, -0.62),
                   end,
                   {5.15, end.x, end.y, *end.yaw, true},
-                  {5.75, 0.36, 1.41, north + radians(60)},
-                  {6.6, 0.32, 1.36, north + radians(165), true},
-                  {7.0, 0.32, 1.36, north + radians(170), true},
-                  {7.6, 0.46, 0.98},
+                  {5.7, 0.28, 1.40, north + radians(60)},
+                  {6.6, 0.26, 1.38, north + radians(165), true},
+                  {7.0, 0.26, 1.38, north + radians(170), true},
+                  {7.6, 0.44, 0.98},
                   {8.3, 0.60, 0.10},
                   {9.0, 0.64, -0.75},
                   {9.6, 0.72, -1.45},
@@ -85,8 +85,8 @@ Role pusher(const World& office) {
                   {14.1, 0.60, 0.40},
                   {14.8, 0.48, 1.05},
                   {15.5, 0.36, 1.36, north + radians(360), true},
-                  {17.0, 0.32, 1.36, north + radians(530), true},
-                  {17.6, 0.46, 0.98},
+                  {17.0, 0.26, 1.38, north + radians(530), true},
+                  {17.6, 0.44, 0.98},
                   {18.3, 0.60, 0.10},
                   {19.0, 0.64, -0.75},
                   {19.6, 0.72, -1.45},
@@ -108,7 +108,7 @@ Role pusher(const World& office) {
             .holds = EasedTrack({{kLetsGo_s + 0.05, 1.0}, {kLetsGo_s + 0.75, 0.0}})};
   role.grips = {grip};
   role.liveliness = 0.4;
-  role.loop = Role::Loop{11.0, 21.0};
+  role.loop = Role::Loop{10.8, 20.8};
   return role;
 }
 
@@ -126,9 +126,10 @@ FloorPath carrier_path() {
                     {3.6, 0.65, -0.85},
                     {4.35, 0.64, 0.00},
                     {5.0, 0.64, 0.52},
-                    {5.7, 0.74, 0.96},
-                    {6.2, 0.97, 1.46},
-                    {6.7, 1.25, 1.97},
+                    {5.7, 0.64, 1.00},
+                    {6.0, 0.75, 1.27},
+                    {6.3, 0.98, 1.54},
+                    {6.75, 1.28, 1.98},
                     {7.2, 1.75, 2.26},
                     {7.8, 2.08, 2.30, radians(-360), true},
                     {8.8, 2.08, 2.30, radians(-360), true},
@@ -201,20 +202,20 @@ Role carrier(const World& office) {
 // --- who gets up from chair_1 and comes back ----------------------------------------------------
 
 Role stroller(const World& office) {
-  const FloorPose seat = seat_on(office, "chair_1", {-0.07, -0.05}, radians(-97));
+  const FloorPose seat = seat_on(office, "chair_1", {-0.09, -0.05}, radians(-97));
   const Eigen::Vector2d feet = seat.place(kSeatToFeet_m, 0.0);
   const double at_seat = seat.yaw;
   FloorPath path({{1.45, feet.x(), feet.y(), at_seat},
                   {2.1, 0.92, 0.25, radians(-110)},
                   {2.6, 1.00, 0.02, radians(-110)},
                   {3.0, 1.09, -0.05, radians(-125), true},
-                  {4.3, 1.10, -0.05, radians(-190), true},
-                  {5.0, 0.92, -0.02, radians(-195)},
-                  {5.6, 0.68, 0.06, radians(-190), true},
+                  {4.55, 1.10, -0.05, radians(-190), true},
+                  {5.15, 0.92, -0.02, radians(-195)},
+                  {5.75, 0.69, 0.06, radians(-190), true},
                   {6.9, 0.66, 0.10, radians(-175), true},
                   {7.6, 0.95, 0.38, radians(-130)},
                   {8.2, feet.x(), feet.y(), at_seat, true}});
-  Role role{.path = path, .walks = {{1.45, 3.0}, {3.0, 4.3}, {4.3, 5.6}, {6.9, 8.2}}};
+  Role role{.path = path, .walks = {{1.45, 3.0}, {3.0, 4.55}, {4.55, 5.75}, {6.9, 8.2}}};
   role.seat = Seat{.pose = seat,
                    .seated = EasedTrack({{0.55, 1.0}, {1.6, 0.0}, {8.15, 0.0}, {9.3, 1.0}}),
                    .hands_height_m = {0.09, 0.09}};
