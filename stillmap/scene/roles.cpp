@@ -261,7 +261,7 @@ Play sitting_play(const World& office) {
   play.roles.push_back(
       talker(seat_on(office, "chair_1", {0.05, 0.0}, radians(-60)), {0.21, 0.09}, 0.1));
   play.roles.back().head_yaw = EasedTrack({{0.0, -0.35}});
-  play.roles.push_back(talker(seat_on(office, "chair_2", {-0.04, 0.0}, 0.0), {0.21, 0.21}, 0.55));
+  play.roles.push_back(talker(seat_on(office, "chair_2", {-0.04, -0.07}, 0.0), {0.21, 0.21}, 0.55));
   play.roles.back().head_yaw = EasedTrack({{0.0, -0.30}});
   return play;
 }
