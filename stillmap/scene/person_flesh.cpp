@@ -143,8 +143,15 @@ void add_trunk(Builder& b) {
   const float hem = (0.148F + 0.010F * f) * g;
   b.flat_cone({0.0F, 0, 0.22F}, {0.003F, 0, 0.07F}, chest - 0.008F, waist, 0.76F);
   if (g > 1.05F) b.ellipsoid({0.06F, 0, 0.11F}, {0.085F * g, 0.10F, 0.10F});
-  const float end = b.look().tucked_in ? 0.055F : -0.075F;
-  b.flat_cone({0.003F, 0, 0.10F}, {-0.003F, 0, end}, waist, hem + 0.012F, 0.80F).flat_end = true;
+  if (b.look().tucked_in) {
+    const Vector3f belt(-0.003F, 0, 0.055F);
+    b.flat_cone({0.003F, 0, 0.10F}, belt, waist, hem + 0.012F, 0.80F).flat_end = true;
+  } else {  // it hangs over the hips and the seat
+    const float width = 0.110F + 0.088F * std::sqrt(g);
+    const Vector3f hips(-0.012F, 0, 0.0F);
+    b.flat_cone({0.003F, 0, 0.13F}, hips, waist, width, 0.80F);
+    b.flat_cone(hips, {-0.014F, 0, -0.065F}, width, width, 0.80F).flat_end = true;
+  }
   for (const Side& side : {kLeft, kRight}) {
     b.cone(side.at(-0.016F, 0.05F, 0.452F),
            side.at(-0.01F, b.shoulder_y() - 0.01F, 0.428F),

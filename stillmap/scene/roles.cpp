@@ -50,8 +50,7 @@ ThingMotion pushed_chair(const Isometry3d& T_world_first) {
   return [=](double t_s) { return t_s <= 1.0 ? T_world_first : path.at(t_s).T_world(0.0); };
 }
 
-Role pusher(const World& office) {
-  const ThingMotion chair = pushed_chair(thing_named(office, "chair_3").T_world_thing);
+FloorPath pusher_path(const ThingMotion& chair) {
   const FloorPose first = floor_pose(chair(0.0));
   // Behind the chair; at first beside its middle, as the cabinet leaves no room.
   const Eigen::Vector2d start = first.place(-0.53, 0.20);
@@ -63,35 +62,39 @@ Role pusher(const World& office) {
   PathKey end = behind(kLetsGo_s, -0.60);
   end.stops = true;
   const double north = radians(90);
-  FloorPath path({{1.0, start.x(), start.y(), radians(72)},
-                  behind(1.8, -0.60),
-                  behind(2.6, -0.62),
-                  behind(3.4, -0.62),
-                  behind(4.2, -0.62),
-                  end,
-                  {5.15, end.x, end.y, *end.yaw, true},
-                  {5.7, 0.28, 1.40, north + radians(60)},
-                  {6.6, 0.26, 1.38, north + radians(165), true},
-                  {7.0, 0.26, 1.38, north + radians(170), true},
-                  {7.6, 0.44, 0.98},
-                  {8.3, 0.60, 0.10},
-                  {9.0, 0.64, -0.75},
-                  {9.6, 0.72, -1.45},
-                  {10.3, 0.75, -1.85, north + radians(180), true},
-                  {11.0, 0.75, -1.85, north + radians(180), true},
-                  {12.0, 0.70, -1.80, north + radians(340), true},
-                  {12.7, 0.62, -1.30},
-                  {13.4, 0.60, -0.45},
-                  {14.1, 0.60, 0.40},
-                  {14.8, 0.48, 1.05},
-                  {15.5, 0.36, 1.36, north + radians(360), true},
-                  {17.0, 0.26, 1.38, north + radians(530), true},
-                  {17.6, 0.44, 0.98},
-                  {18.3, 0.60, 0.10},
-                  {19.0, 0.64, -0.75},
-                  {19.6, 0.72, -1.45},
-                  {20.3, 0.75, -1.85, north + radians(540), true}});
-  Role role{.path = path,
+  return FloorPath({{1.0, start.x(), start.y(), radians(72)},
+                    behind(1.8, -0.60),
+                    behind(2.6, -0.62),
+                    behind(3.4, -0.62),
+                    behind(4.2, -0.62),
+                    end,
+                    {5.15, end.x, end.y, *end.yaw, true},
+                    {5.7, 0.28, 1.40, north + radians(60)},
+                    {6.6, 0.26, 1.38, north + radians(165), true},
+                    {7.0, 0.26, 1.38, north + radians(170), true},
+                    {7.6, 0.44, 0.98},
+                    {8.3, 0.60, 0.10},
+                    {9.0, 0.64, -0.75},
+                    {9.6, 0.72, -1.45},
+                    {10.3, 0.75, -1.85, north + radians(180), true},
+                    {11.0, 0.75, -1.85, north + radians(180), true},
+                    {12.0, 0.70, -1.80, north + radians(340), true},
+                    {12.7, 0.62, -1.30},
+                    {13.4, 0.60, -0.45},
+                    {14.1, 0.60, 0.40},
+                    {14.8, 0.48, 1.05},
+                    {15.5, 0.36, 1.36, north + radians(360), true},
+                    {17.0, 0.26, 1.38, north + radians(530), true},
+                    {17.6, 0.44, 0.98},
+                    {18.3, 0.60, 0.10},
+                    {19.0, 0.64, -0.75},
+                    {19.6, 0.72, -1.45},
+                    {20.3, 0.75, -1.85, north + radians(540), true}});
+}
+
+Role pusher(const World& office) {
+  const ThingMotion chair = pushed_chair(thing_named(office, "chair_3").T_world_thing);
+  Role role{.path = pusher_path(chair),
             .walks = {{1.0, kLetsGo_s},
                       {5.15, 6.6},
                       {7.0, 10.3},
