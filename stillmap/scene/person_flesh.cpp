@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 
 #include "stillmap/scene/person_shape.hpp"
@@ -147,10 +148,13 @@ void add_trunk(Builder& b) {
     const Vector3f belt(-0.003F, 0, 0.055F);
     b.flat_cone({0.003F, 0, 0.10F}, belt, waist, hem + 0.012F, 0.80F).flat_end = true;
   } else {  // it hangs over the hips and the seat
-    const float width = 0.110F + 0.088F * std::sqrt(g);
-    const Vector3f hips(-0.012F, 0, 0.0F);
-    b.flat_cone({0.003F, 0, 0.13F}, hips, waist, width, 0.80F);
-    b.flat_cone(hips, {-0.014F, 0, -0.065F}, width, width, 0.80F).flat_end = true;
+    const float width = 0.109F + 0.086F * std::sqrt(g);
+    const float depth = 0.69F + 0.35F * std::max(g - 1.F, 0.F);
+    const Vector3f hips(-0.016F, 0, -0.01F);
+    b.wear(PersonLayer::kShirt, PersonChart::kTrunk, 0.015F);
+    b.flat_cone({0.0F, 0, 0.14F}, hips, waist, width, depth);
+    b.flat_cone(hips, {-0.017F, 0, -0.065F}, width, width, depth).flat_end = true;
+    b.wear(PersonLayer::kShirt, PersonChart::kTrunk, 0.05F);
   }
   for (const Side& side : {kLeft, kRight}) {
     b.cone(side.at(-0.016F, 0.05F, 0.452F),
