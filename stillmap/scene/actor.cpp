@@ -89,7 +89,8 @@ PalmGoal Actor::palm(
   if (role_.seat) {
     const double seated = role_.seat->seated.at(role_s);
     const Isometry3d seat = role_.seat->pose.T_world(kSeatedPelvisHeight_m);
-    const Vector3d resting(0.30, 0.13 * y, role_.seat->hands_height_m);
+    const Vector3d resting(
+        0.30, 0.13 * y, role_.seat->hands_height_m[static_cast<std::size_t>(side)]);
     go_to(seat * resting, 1.2, seated);
     const double phase = role_.liveliness + (y > 0 ? 0.0 : 0.37);
     const double raised = 0.5 + 0.5 * wave(t_s, y > 0 ? 4.7 : 6.1, phase);

@@ -25,8 +25,8 @@ struct Grip {
 /// Somewhere to sit: the pelvis on the seat, the feet where the path is.
 struct Seat {
   FloorPose pose;
-  EasedTrack seated{{{0.0, 0.0}}};  ///< 1 while seated
-  double hands_height_m = 0.1;      ///< of the resting palms over the pelvis joint
+  EasedTrack seated{{{0.0, 0.0}}};                 ///< 1 while seated
+  std::array<double, 2> hands_height_m{0.1, 0.1};  ///< of the resting palms over the pelvis joint
 };
 
 /// What somebody does. Times of tracks are those of `loop`.

@@ -110,7 +110,7 @@ TEST(Body, HandsAndFeetFollowTheirBonesRigidly) {
   for (std::size_t i = 0; i < surface.positions.size(); ++i) {
     const Vector3d p = person().rest().positions[i].cast<double>();
     const Vector3d from_wrist = p - rest[index(Joint::kRightWrist)];
-    const bool fingers = p.y() < 0 && from_wrist.norm() < 0.2 && from_wrist.z() < -0.08;
+    const bool fingers = p.y() < -0.3 && from_wrist.norm() < 0.2 && from_wrist.z() < -0.08;
     if (!fingers) continue;
     const Vector3d expected = joints[index(Joint::kRightWrist)] * from_wrist;
     EXPECT_LT((surface.positions[i].cast<double>() - expected).norm(), 0.004);

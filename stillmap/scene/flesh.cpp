@@ -14,22 +14,6 @@ namespace {
 
 constexpr float kFar = 1e3F;
 
-// First-order distance: the value in the space where the part is round, over its slope.
-float distance_to(const FleshPart& part, const Eigen::Vector3f& p) {
-  const Eigen::Vector3f from = part.squeeze * part.from;
-  const Eigen::Vector3f along = part.squeeze * part.to - from;
-  const Eigen::Vector3f at = part.squeeze * p - from;
-  const float length2 = along.squaredNorm();
-  const float share = length2 > 0 ? std::clamp(at.dot(along) / length2, 0.F, 1.F) : 0.F;
-  const Eigen::Vector3f out = at - share * along;
-  const float length = out.norm();
-  const float radius = part.from_radius + share * (part.to_radius - part.from_radius);
-  float d = length - radius;
-  if (length > 1e-6F) d /= (part.squeeze.transpose() * out).norm() / length;
-  if (part.flat_end) d = std::max(d, (p - part.to).dot((part.to - part.from).normalized()));
-  return d;
-}
-
 // Minimum of two distances whose edge is rounded within `blend`.
 float melt(float a, float b, float blend) {
   const float h = std::max(blend - std::abs(a - b), 0.F);
@@ -76,7 +60,7 @@ class Lattice {
     const float half_diagonal = 0.866F * cell_ * kBlock;
     // Distances to stretched parts are off by some; hence twice the block's size.
     const bool empty = std::abs(at_middle) > 2.F * half_diagonal;
-    const Flesh parts = empty ? Flesh({}) : flesh.near(middle, half_diagonal);
+    const Flesh parts = empty ? Flesh(std::vector<FleshPart>{}) : flesh.near(middle, half_diagonal);
     for (int z = 0; z < kBlock; ++z) {
       for (int y = 0; y < kBlock; ++y) {
         for (int x = 0; x < kBlock; ++x) {
@@ -166,13 +150,39 @@ void add_triangles(FleshSurface& surface,
 
 }  // namespace
 
+Flesh::Flesh(const std::vector<FleshPart>& parts) {
+  for (const FleshPart& part : parts) {
+    const Eigen::Vector3f along = part.squeeze * (part.to - part.from);
+    const float length2 = along.squaredNorm();
+    parts_.push_back({part,
+                      part.squeeze * part.from,
+                      along,
+                      length2 > 0 ? 1.F / length2 : 0.F,
+                      (part.to - part.from).normalized()});
+  }
+}
+
+// First-order distance: the value in the space where the part is round, over its slope.
+float Flesh::Prepared::distance_to(const Eigen::Vector3f& p) const {
+  const Eigen::Vector3f at = part.squeeze * p - squeezed_from;
+  const float share = std::clamp(at.dot(squeezed_along) * inverse_length2, 0.F, 1.F);
+  const Eigen::Vector3f out = at - share * squeezed_along;
+  const float length = out.norm();
+  const float radius = part.from_radius + share * (part.to_radius - part.from_radius);
+  float d = length - radius;
+  if (length > 1e-6F) d *= length / (part.squeeze.transpose() * out).norm();
+  if (part.flat_end) d = std::max(d, (p - part.to).dot(end_direction));
+  return d;
+}
+
 FleshSample Flesh::sample(const Eigen::Vector3f& p) const {
   std::array<float, kFleshLayers> melted;
   melted.fill(kFar);
   std::array<float, kFleshLayers> nearest = melted;
   std::array<std::uint8_t, kFleshLayers> charts{};
-  for (const FleshPart& part : parts_) {
-    const float d = distance_to(part, p);
+  for (const Prepared& prepared : parts_) {
+    const FleshPart& part = prepared.part;
+    const float d = prepared.distance_to(p);
     melted[part.layer] = melt(melted[part.layer], d, part.blend_m);
     if (d < nearest[part.layer]) {
       nearest[part.layer] = d;
@@ -187,15 +197,17 @@ FleshSample Flesh::sample(const Eigen::Vector3f& p) const {
 Flesh Flesh::near(const Eigen::Vector3f& p, float reach_m) const {
   std::vector<float> distances;
   float least = std::numeric_limits<float>::max();
-  for (const FleshPart& part : parts_) {
-    distances.push_back(distance_to(part, p));
+  for (const Prepared& prepared : parts_) {
+    distances.push_back(prepared.distance_to(p));
     least = std::min(least, distances.back());
   }
-  std::vector<FleshPart> kept;
+  Flesh kept;
   for (std::size_t i = 0; i < parts_.size(); ++i) {
-    if (distances[i] < least + 3.F * reach_m + parts_[i].blend_m) kept.push_back(parts_[i]);
+    if (distances[i] < least + 3.F * reach_m + parts_[i].part.blend_m) {
+      kept.parts_.push_back(parts_[i]);
+    }
   }
-  return Flesh(std::move(kept));
+  return kept;
 }
 
 Eigen::Vector3f Flesh::normal(const Eigen::Vector3f& p) const {

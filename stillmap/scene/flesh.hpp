@@ -35,7 +35,7 @@ inline constexpr std::size_t kFleshLayers = 5;
 /// A solid made of soft parts.
 class Flesh {
  public:
-  explicit Flesh(std::vector<FleshPart> parts) : parts_(std::move(parts)) {}
+  explicit Flesh(const std::vector<FleshPart>& parts);
 
   [[nodiscard]] FleshSample sample(const Eigen::Vector3f& p) const;
 
@@ -45,10 +45,21 @@ class Flesh {
   /// Direction in which the distance grows, at a place near the surface; unit.
   [[nodiscard]] Eigen::Vector3f normal(const Eigen::Vector3f& p) const;
 
-  [[nodiscard]] const std::vector<FleshPart>& parts() const { return parts_; }
-
  private:
-  std::vector<FleshPart> parts_;
+  // A part with what its distance needs, worked out once.
+  struct Prepared {
+    FleshPart part;
+    Eigen::Vector3f squeezed_from;
+    Eigen::Vector3f squeezed_along;
+    float inverse_length2 = 0;
+    Eigen::Vector3f end_direction;
+
+    [[nodiscard]] float distance_to(const Eigen::Vector3f& p) const;
+  };
+
+  Flesh() = default;
+
+  std::vector<Prepared> parts_;
 };
 
 /// A closed surface.

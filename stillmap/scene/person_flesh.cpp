@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 
 #include "stillmap/scene/person_shape.hpp"
@@ -143,8 +144,18 @@ void add_trunk(Builder& b) {
   const float hem = (0.148F + 0.010F * f) * g;
   b.flat_cone({0.0F, 0, 0.22F}, {0.003F, 0, 0.07F}, chest - 0.008F, waist, 0.76F);
   if (g > 1.05F) b.ellipsoid({0.06F, 0, 0.11F}, {0.085F * g, 0.10F, 0.10F});
-  const float end = b.look().tucked_in ? 0.055F : -0.075F;
-  b.flat_cone({0.003F, 0, 0.10F}, {-0.003F, 0, end}, waist, hem + 0.012F, 0.80F).flat_end = true;
+  if (b.look().tucked_in) {
+    const Vector3f belt(-0.003F, 0, 0.055F);
+    b.flat_cone({0.003F, 0, 0.10F}, belt, waist, hem + 0.012F, 0.80F).flat_end = true;
+  } else {  // it hangs over the hips and the seat
+    const float width = 0.109F + 0.086F * std::sqrt(g);
+    const float depth = 0.69F + 0.35F * std::max(g - 1.F, 0.F);
+    const Vector3f hips(-0.016F, 0, -0.01F);
+    b.wear(PersonLayer::kShirt, PersonChart::kTrunk, 0.015F);
+    b.flat_cone({0.0F, 0, 0.14F}, hips, waist, width, depth);
+    b.flat_cone(hips, {-0.017F, 0, -0.065F}, width, width, depth).flat_end = true;
+    b.wear(PersonLayer::kShirt, PersonChart::kTrunk, 0.05F);
+  }
   for (const Side& side : {kLeft, kRight}) {
     b.cone(side.at(-0.016F, 0.05F, 0.452F),
            side.at(-0.01F, b.shoulder_y() - 0.01F, 0.428F),

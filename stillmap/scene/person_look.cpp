@@ -47,7 +47,9 @@ PersonLook random_look(std::uint64_t seed) {
   look.long_sleeves = look.shirt == Fabric::kKnit || rng.below(2) == 0;
   look.tucked_in = rng.below(2) == 0;
   look.skin_color = pick(kSkins, rng);
-  look.hair_color = pick(kHairs, rng);
+  const cv::Vec3b hair = pick(kHairs, rng);
+  // Dark skin goes with dark hair, which stands out from it.
+  look.hair_color = look.skin_color[0] < 160 ? kHairs[0] : hair;
   look.shirt_color = pick(kShirts, rng);
   const bool dark = look.shirt_color[0] + look.shirt_color[1] + look.shirt_color[2] < 3 * kDark;
   look.shirt_color_2 = dark || rng.below(3) != 0 ? cv::Vec3b{228, 226, 216} : cv::Vec3b{34, 34, 44};

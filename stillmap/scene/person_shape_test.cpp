@@ -100,6 +100,29 @@ TEST(PersonShape, LimbsAreApartAtRest) {
   }
 }
 
+// Trousers don't show through a shirt that is worn over them.
+TEST(PersonShape, LooseShirtsCoverTheHips) {
+  PersonLook look;
+  look.tucked_in = false;
+  for (const double girth : {0.93, 1.05, 1.17}) {
+    for (const double feminine : {0.0, 1.0}) {
+      look.girth = girth;
+      look.feminine = feminine;
+      const Flesh flesh = person_flesh(look);
+      for (float angle = 0.F; angle < 6.3F; angle += 0.2F) {
+        for (const float z : {-0.045F, -0.02F, 0.02F, 0.06F}) {
+          const Vector3f out(std::cos(angle), std::sin(angle), 0.F);
+          float away = 0.215F;  // within the arms
+          while (flesh.sample(away * out + z * Vector3f::UnitZ()).distance > 0.F) away -= 0.002F;
+          const FleshSample outermost = flesh.sample(away * out + z * Vector3f::UnitZ());
+          EXPECT_EQ(outermost.layer, static_cast<std::uint8_t>(PersonLayer::kShirt))
+              << girth << " " << feminine << " " << angle << " " << z;
+        }
+      }
+    }
+  }
+}
+
 TEST(PersonShape, TheMeshIsWholeAndPainted) {
   MaterialLibrary materials;
   const Body body = make_person(random_look(4), materials);

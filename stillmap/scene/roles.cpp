@@ -42,7 +42,7 @@ constexpr double kLetsGo_s = 5.0;
 ThingMotion pushed_chair(const Isometry3d& T_world_first) {
   const FloorPose first = floor_pose(T_world_first);
   const FloorPath path({{1.0, first.position.x(), first.position.y(), first.yaw},
-                        {1.8, 0.74, -1.50, radians(100)},
+                        {1.8, 0.72, -1.52, radians(92)},
                         {2.6, 0.62, -0.54, radians(92)},
                         {3.4, 0.61, 0.42, radians(90)},
                         {4.2, 0.59, 1.42, radians(92)},
@@ -50,8 +50,7 @@ ThingMotion pushed_chair(const Isometry3d& T_world_first) {
   return [=](double t_s) { return t_s <= 1.0 ? T_world_first : path.at(t_s).T_world(0.0); };
 }
 
-Role pusher(const World& office) {
-  const ThingMotion chair = pushed_chair(thing_named(office, "chair_3").T_world_thing);
+FloorPath pusher_path(const ThingMotion& chair) {
   const FloorPose first = floor_pose(chair(0.0));
   // Behind the chair; at first beside its middle, as the cabinet leaves no room.
   const Eigen::Vector2d start = first.place(-0.53, 0.20);
@@ -63,40 +62,46 @@ Role pusher(const World& office) {
   PathKey end = behind(kLetsGo_s, -0.60);
   end.stops = true;
   const double north = radians(90);
-  FloorPath path({{1.0, start.x(), start.y(), radians(72)},
-                  behind(1.8, -0.60),
-                  behind(2.6, -0.62),
-                  behind(3.4, -0.62),
-                  behind(4.2, -0.62),
-                  end,
-                  {5.4, end.x, end.y, *end.yaw, true},
-                  {6.0, 0.40, 1.33, north + radians(70)},
-                  {6.6, 0.38, 1.30, north + radians(170), true},
-                  {7.2, 0.50, 0.90},
-                  {8.0, 0.60, 0.00},
-                  {8.8, 0.64, -0.95},
-                  {9.4, 0.72, -1.55},
-                  {10.0, 0.75, -1.85, north + radians(180), true},
-                  {11.2, 0.70, -1.80, north + radians(340), true},
-                  {12.0, 0.62, -1.25},
-                  {12.8, 0.60, -0.40},
-                  {13.6, 0.60, 0.45},
-                  {14.4, 0.50, 1.10},
-                  {15.0, 0.42, 1.30, north + radians(360), true},
-                  {16.6, 0.38, 1.30, north + radians(530), true},
-                  {17.2, 0.50, 0.90},
-                  {18.0, 0.60, 0.00},
-                  {18.8, 0.64, -0.95},
-                  {19.4, 0.72, -1.55},
-                  {20.0, 0.75, -1.85, north + radians(540), true}});
-  Role role{.path = path,
+  return FloorPath({{1.0, start.x(), start.y(), radians(72)},
+                    behind(1.8, -0.60),
+                    behind(2.6, -0.62),
+                    behind(3.4, -0.62),
+                    behind(4.2, -0.62),
+                    end,
+                    {5.15, end.x, end.y, *end.yaw, true},
+                    {5.7, 0.28, 1.40, north + radians(60)},
+                    {6.6, 0.26, 1.38, north + radians(165), true},
+                    {7.0, 0.26, 1.38, north + radians(170), true},
+                    {7.6, 0.44, 0.98},
+                    {8.3, 0.60, 0.10},
+                    {9.0, 0.64, -0.75},
+                    {9.6, 0.72, -1.45},
+                    {10.3, 0.75, -1.85, north + radians(180), true},
+                    {11.0, 0.75, -1.85, north + radians(180), true},
+                    {12.0, 0.70, -1.80, north + radians(340), true},
+                    {12.7, 0.62, -1.30},
+                    {13.4, 0.60, -0.45},
+                    {14.1, 0.60, 0.40},
+                    {14.8, 0.48, 1.05},
+                    {15.5, 0.36, 1.36, north + radians(360), true},
+                    {17.0, 0.26, 1.38, north + radians(530), true},
+                    {17.6, 0.44, 0.98},
+                    {18.3, 0.60, 0.10},
+                    {19.0, 0.64, -0.75},
+                    {19.6, 0.72, -1.45},
+                    {20.3, 0.75, -1.85, north + radians(540), true}});
+}
+
+Role pusher(const World& office) {
+  const ThingMotion chair = pushed_chair(thing_named(office, "chair_3").T_world_thing);
+  Role role{.path = pusher_path(chair),
             .walks = {{1.0, kLetsGo_s},
-                      {5.4, 6.6},
-                      {6.6, 10.0},
-                      {10.0, 11.2},
-                      {11.2, 15.0},
-                      {15.0, 16.6},
-                      {16.6, 20.0}}};
+                      {5.15, 6.6},
+                      {7.0, 10.3},
+                      {11.0, 12.0},
+                      {12.0, 15.5},
+                      {15.5, 17.0},
+                      {17.0, 20.3}}};
   role.lean = EasedTrack({{0.0, 0.16}, {1.0, 0.16}, {2.0, 0.26}, {4.2, 0.24}, {5.5, 0.0}});
   role.head_yaw = EasedTrack(
       {{2.0, 0.0}, {2.8, 0.5}, {3.6, 0.4}, {4.2, 0.0}, {7.0, 0.0}, {7.6, 0.6}, {8.4, 0.0}});
@@ -106,7 +111,7 @@ Role pusher(const World& office) {
             .holds = EasedTrack({{kLetsGo_s + 0.05, 1.0}, {kLetsGo_s + 0.75, 0.0}})};
   role.grips = {grip};
   role.liveliness = 0.4;
-  role.loop = Role::Loop{10.0, 20.0};
+  role.loop = Role::Loop{10.8, 20.8};
   return role;
 }
 
@@ -114,32 +119,29 @@ Role pusher(const World& office) {
 
 constexpr double kTakes_s = 0.25;
 constexpr double kTaken_s = 1.15;
-constexpr double kPuts_s = 7.25;
-constexpr double kPut_s = 8.05;
+constexpr double kPuts_s = 7.4;
+constexpr double kPut_s = 8.2;
 
 FloorPath carrier_path() {
-  return FloorPath({{1.25, 1.20, -2.28, radians(-90)},
-                    {2.1, 1.02, -2.02, radians(-185)},
-                    {2.8, 0.72, -1.45},
-                    {3.5, 0.64, -0.80},
-                    {4.3, 0.64, 0.05},
-                    {4.9, 0.64, 0.55},
-                    {5.5, 0.72, 0.98},
-                    {6.0, 1.02, 1.42},
-                    {6.5, 1.50, 1.86},
-                    {7.0, 2.22, 1.98},
-                    {7.6, 2.54, 1.87, radians(-270), true},
-                    {8.5, 2.54, 1.87, radians(-270), true},
-                    {9.2, 2.56, 1.70, radians(-400)},
-                    {10.2, 2.50, 0.60, radians(-450)},
-                    {11.0, 2.48, 0.25, radians(-450), true},
-                    {13.0, 2.48, 0.30, radians(-630), true},
-                    {14.2, 2.46, 1.10},
-                    {15.0, 2.48, 1.55, radians(-630), true},
-                    {16.6, 2.50, 1.60, radians(-810), true},
-                    {18.0, 2.48, 0.80},
-                    {19.0, 2.48, 0.25, radians(-810), true},
-                    {21.0, 2.48, 0.25, radians(-810), true}});
+  return FloorPath({{1.7, 1.20, -2.28, radians(-90)},
+                    {2.4, 1.14, -2.02, radians(-170)},
+                    {3.0, 0.84, -1.55},
+                    {3.6, 0.65, -0.85},
+                    {4.35, 0.64, 0.00},
+                    {5.0, 0.64, 0.52},
+                    {5.7, 0.64, 1.00},
+                    {6.0, 0.75, 1.27},
+                    {6.3, 0.98, 1.54},
+                    {6.75, 1.28, 1.98},
+                    {7.2, 1.75, 2.26},
+                    {7.8, 2.08, 2.30, radians(-360), true},
+                    {8.8, 2.08, 2.30, radians(-360), true},
+                    {10.0, 1.50, 2.12, radians(-540), true},
+                    {10.6, 1.50, 2.12, radians(-540), true},
+                    {12.0, 1.48, 2.12, radians(-720), true},
+                    {13.2, 2.00, 2.25, radians(-720), true},
+                    {14.8, 2.00, 2.25, radians(-900), true},
+                    {16.2, 1.50, 2.12, radians(-900), true}});
 }
 
 ThingMotion carried_box(const Isometry3d& T_world_first) {
@@ -151,7 +153,7 @@ ThingMotion carried_box(const Isometry3d& T_world_first) {
     const FloorPose root = path.at(t_s);
     return FloorPose{root.place(0.37, 0.0), root.yaw + 0.5 * kPi};
   };
-  const FloorPose last{{2.55, 2.30}, radians(-180)};
+  const FloorPose last{{2.55, 2.30}, radians(-270)};
   constexpr double kHeld_z = 0.93;
   constexpr double kLast_z = 0.60;
   const auto blended = [](const FloorPose& a,
@@ -178,50 +180,48 @@ Role carrier(const World& office) {
   const ThingMotion box = carried_box(thing_named(office, "box_1").T_world_thing);
   Role role{
       .path = carrier_path(),
-      .walks = {{1.25, 7.6}, {8.5, 11.0}, {11.0, 13.0}, {13.0, 15.0}, {15.0, 16.6}, {16.6, 19.0}}};
+      .walks = {{1.7, 7.8}, {8.8, 10.0}, {10.6, 12.0}, {12.0, 13.2}, {13.2, 14.8}, {14.8, 16.2}}};
   role.lean =
-      EasedTrack({{0.25, 0.55}, {1.2, 0.0}, {7.1, 0.0}, {8.0, 0.95}, {8.1, 0.95}, {8.9, 0.0}});
-  role.crouch_m = EasedTrack({{7.2, 0.0}, {8.0, 0.10}, {8.1, 0.10}, {8.8, 0.0}});
+      EasedTrack({{0.25, 0.55}, {1.2, 0.0}, {7.25, 0.0}, {8.15, 0.95}, {8.25, 0.95}, {9.05, 0.0}});
+  role.crouch_m = EasedTrack({{7.35, 0.0}, {8.15, 0.10}, {8.25, 0.10}, {8.95, 0.0}});
   role.head_yaw = EasedTrack({{3.2, 0.0},
                               {3.9, 0.45},
                               {4.9, 0.2},
                               {5.6, 0.0},
-                              {11.2, 0.0},
-                              {11.8, 0.9},
-                              {12.8, 0.0},
-                              {19.2, 0.0},
-                              {19.8, 0.9},
-                              {20.8, 0.0}});
+                              {16.4, 0.0},
+                              {17.4, 0.7},
+                              {18.4, 0.7},
+                              {19.6, 0.0}});
   Grip grip{.T_world_thing = box,
             .palms_thing = {Vector3d(0.215, 0.0, 0.13), Vector3d(-0.215, 0.0, 0.13)},
             .roll = 0.0,
             .holds = EasedTrack({{kPut_s + 0.05, 1.0}, {kPut_s + 0.75, 0.0}})};
   role.grips = {grip};
   role.liveliness = 0.7;
-  role.loop = Role::Loop{11.0, 21.0};
+  role.loop = Role::Loop{10.4, 20.4};
   return role;
 }
 
 // --- who gets up from chair_1 and comes back ----------------------------------------------------
 
 Role stroller(const World& office) {
-  const FloorPose seat = seat_on(office, "chair_1", {0.02, 0.0}, radians(-95));
+  const FloorPose seat = seat_on(office, "chair_1", {-0.09, -0.05}, radians(-97));
   const Eigen::Vector2d feet = seat.place(kSeatToFeet_m, 0.0);
-  const double at_seat = radians(-95);
+  const double at_seat = seat.yaw;
   FloorPath path({{1.45, feet.x(), feet.y(), at_seat},
                   {2.1, 0.92, 0.25, radians(-110)},
-                  {2.6, 1.08, -0.10, radians(-100)},
-                  {3.0, 1.12, -0.30, radians(-120), true},
-                  {3.9, 1.12, -0.28, radians(-190), true},
-                  {4.8, 0.90, -0.12, radians(-215)},
-                  {5.6, 0.68, 0.06, radians(-190), true},
+                  {2.6, 1.00, 0.02, radians(-110)},
+                  {3.0, 1.09, -0.05, radians(-125), true},
+                  {4.55, 1.10, -0.05, radians(-190), true},
+                  {5.15, 0.92, -0.02, radians(-195)},
+                  {5.75, 0.69, 0.06, radians(-190), true},
                   {6.9, 0.66, 0.10, radians(-175), true},
                   {7.6, 0.95, 0.38, radians(-130)},
                   {8.2, feet.x(), feet.y(), at_seat, true}});
-  Role role{.path = path, .walks = {{1.45, 3.0}, {3.0, 3.9}, {3.9, 5.6}, {6.9, 8.2}}};
+  Role role{.path = path, .walks = {{1.45, 3.0}, {3.0, 4.55}, {4.55, 5.75}, {6.9, 8.2}}};
   role.seat = Seat{.pose = seat,
                    .seated = EasedTrack({{0.55, 1.0}, {1.6, 0.0}, {8.15, 0.0}, {9.3, 1.0}}),
-                   .hands_height_m = 0.09};
+                   .hands_height_m = {0.09, 0.09}};
   role.head_yaw = EasedTrack({{0.0, -0.6},
                               {0.7, -0.5},
                               {1.6, 0.0},
@@ -240,7 +240,7 @@ Role stroller(const World& office) {
 }
 
 // Somebody who stays seated and talks.
-Role talker(const FloorPose& seat, double hands_height_m, double liveliness) {
+Role talker(const FloorPose& seat, const std::array<double, 2>& hands_height_m, double liveliness) {
   const Eigen::Vector2d feet = seat.place(kSeatToFeet_m, 0.0);
   Role role{.path = FloorPath({{0.0, feet.x(), feet.y(), seat.yaw}})};
   role.seat =
@@ -261,9 +261,10 @@ const Thing& thing_named(const World& world, const std::string& name) {
 
 Play sitting_play(const World& office) {
   Play play;
-  play.roles.push_back(talker(seat_on(office, "chair_1", {0.05, 0.03}, radians(-72)), 0.09, 0.1));
+  play.roles.push_back(
+      talker(seat_on(office, "chair_1", {0.05, 0.0}, radians(-60)), {0.21, 0.09}, 0.1));
   play.roles.back().head_yaw = EasedTrack({{0.0, -0.35}});
-  play.roles.push_back(talker(seat_on(office, "chair_2", {-0.04, 0.0}, 0.0), 0.20, 0.55));
+  play.roles.push_back(talker(seat_on(office, "chair_2", {-0.04, -0.07}, 0.0), {0.21, 0.21}, 0.55));
   play.roles.back().head_yaw = EasedTrack({{0.0, -0.30}});
   return play;
 }
