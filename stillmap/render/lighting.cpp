@@ -133,8 +133,7 @@ void Lighting::trace(const RayScene& scene, const World& world) {
         const Eigen::Vector3f direction = lamp_point(world.lamps[lamp], at) - origin;
         if (direction.dot(sample.surfel->normal) <= 0) return;
         // Not as far as the lamp's own panel.
-        queue.add(
-            {origin, direction, 0.5F, 0.98F}, sample.openness.lamps[lamp], 1.F / kRaysPerLamp);
+        queue.add({origin, direction, 0.98F}, sample.openness.lamps[lamp], 1.F / kRaysPerLamp);
       });
     }
   }
@@ -142,7 +141,7 @@ void Lighting::trace(const RayScene& scene, const World& world) {
     each_sample([&](Sample& sample, int spot) {
       const Eigen::Vector2f at = spread_point(spot + k * kSpots, kRaysAround * kSpots);
       const Eigen::Vector3f direction = direction_around(sample.surfel->normal, at);
-      queue.add({origin_of(*sample.surfel), direction, 0.5F, kNearness},
+      queue.add({origin_of(*sample.surfel), direction, kNearness},
                 sample.openness.around,
                 1.F / kRaysAround);
     });

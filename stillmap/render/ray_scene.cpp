@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stillmap/render/ray_scene.hpp"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -41,10 +42,10 @@ std::vector<float> packed(const std::vector<Eigen::Vector3f>& points) {
   return floats;
 }
 
-void share_vertices(const Geometry& geometry, unsigned step, const std::vector<float>& vertices) {
+void share_vertices(const Geometry& geometry, const std::vector<float>& vertices) {
   rtcSetSharedGeometryBuffer(geometry.get(),
                              RTC_BUFFER_TYPE_VERTEX,
-                             step,
+                             0,
                              RTC_FORMAT_FLOAT3,
                              vertices.data(),
                              0,
@@ -63,9 +64,18 @@ void share_triangles(const Geometry& geometry, const std::vector<Mesh::Triangle>
                              triangles.size());
 }
 
-void set_transform(const Geometry& instance, unsigned step, const Eigen::Isometry3d& T) {
-  const Eigen::Matrix4f matrix = T.cast<float>().matrix();  // stored by columns
-  rtcSetGeometryTransform(instance.get(), step, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, matrix.data());
+// What is at `open` and goes straight to `close`, at a time between 0 and 1.
+Eigen::Matrix4f between(const Eigen::Isometry3d& open, const Eigen::Isometry3d& close, float time) {
+  return (1.F - time) * open.cast<float>().matrix() + time * close.cast<float>().matrix();
+}
+
+std::vector<float> between(const std::vector<float>& open,
+                           const std::vector<float>& close,
+                           float time) {
+  std::vector<float> result(open.size());
+  for (std::size_t i = 0; i < open.size(); ++i)
+    result[i] = (1.F - time) * open[i] + time * close[i];
+  return result;
 }
 
 bool same_pose(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
@@ -125,7 +135,7 @@ void WorldGeometry::Parts::attach(const Scene& scene,
                                   const std::vector<float>& points,
                                   const Mesh& mesh) const {
   const Geometry geometry(rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
-  share_vertices(geometry, 0, points);
+  share_vertices(geometry, points);
   share_triangles(geometry, mesh.triangles);
   rtcCommitGeometry(geometry.get());
   rtcAttachGeometry(scene.get(), geometry.get());
@@ -143,74 +153,97 @@ const World& WorldGeometry::world() const {
 struct RayScene::Parts {
   struct PersonSurface {
     PosedSurface open, close;
-    std::vector<float> open_vertices, close_vertices;
     bool moves = false;
+  };
+  // The world at one moment. Cheaper to build one for each than one that knows of time.
+  struct Instant {
+    Scene scene;
+    std::vector<std::vector<float>> people;  // vertices
   };
 
   const WorldGeometry::Parts* geometry;
   Exposure exposure;
   std::vector<PersonSurface> people;
-  Scene scene;
+  std::vector<Instant> instants;  // by moment; a single one where nothing moves
 
   Parts(const WorldGeometry::Parts& shown, const Exposure& during);
-  void add_instance(const Scene& part,
-                    const Eigen::Isometry3d& open,
-                    const Eigen::Isometry3d& close);
-  void add_person(const PersonSurface& surface, const Mesh& mesh);
+  [[nodiscard]] Instant instant_at(float time) const;
+  void add_instance(const Instant& instant, const Scene& part, const Eigen::Matrix4f& T) const;
+  void add_person(const Instant& instant,
+                  const std::vector<float>& vertices,
+                  const Mesh& mesh) const;
+  [[nodiscard]] bool moves() const;
   [[nodiscard]] std::uint32_t object_of(unsigned instance, unsigned part) const;
 };
 
 RayScene::Parts::Parts(const WorldGeometry::Parts& shown, const Exposure& during)
-    : geometry(&shown), exposure(during), scene(rtcNewScene(shown.device.get())) {
+    : geometry(&shown), exposure(during) {
   const World& world = *shown.world;
   STILLMAP_CHECK(during.open.T_world_things.size() == world.things.size() &&
                  during.close.T_world_things.size() == world.things.size() &&
                  during.open.people.size() == world.people.size() &&
                  during.close.people.size() == world.people.size());
-  rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_LOW);  // built anew for every frame
-  const Eigen::Isometry3d identity = Eigen::Isometry3d::Identity();
-  add_instance(shown.fixed_scene, identity, identity);
-  for (std::size_t i = 0; i < shown.movable_things.size(); ++i) {
-    const std::uint32_t thing = shown.movable_things[i];
-    add_instance(shown.movable_scenes[i],
-                 during.open.T_world_things[thing],
-                 during.close.T_world_things[thing]);
-  }
-  people.resize(world.people.size());
-  for (std::size_t i = 0; i < people.size(); ++i) {
+  for (std::size_t i = 0; i < world.people.size(); ++i) {
     const Body& body = world.people[i].body;
-    people[i].open = body.posed(during.open.people[i]);
-    people[i].close = body.posed(during.close.people[i]);
-    people[i].open_vertices = packed(people[i].open.positions);
-    people[i].close_vertices = packed(people[i].close.positions);
-    people[i].moves = people[i].open_vertices != people[i].close_vertices;
-    add_person(people[i], body.rest());
+    PersonSurface surface{body.posed(during.open.people[i]), body.posed(during.close.people[i])};
+    surface.moves = surface.open.positions != surface.close.positions;
+    people.push_back(std::move(surface));
   }
-  rtcCommitScene(scene.get());
+  for (const float time : kMoments) {
+    instants.push_back(instant_at(time));
+    if (!moves()) break;
+  }
 }
 
-void RayScene::Parts::add_instance(const Scene& part,
-                                   const Eigen::Isometry3d& open,
-                                   const Eigen::Isometry3d& close) {
+bool RayScene::Parts::moves() const {
+  for (const std::uint32_t thing : geometry->movable_things) {
+    if (!same_pose(exposure.open.T_world_things[thing], exposure.close.T_world_things[thing])) {
+      return true;
+    }
+  }
+  return std::ranges::any_of(people, [](const PersonSurface& person) { return person.moves; });
+}
+
+RayScene::Parts::Instant RayScene::Parts::instant_at(float time) const {
+  Instant instant{Scene(rtcNewScene(geometry->device.get())), {}};
+  rtcSetSceneBuildQuality(instant.scene.get(), RTC_BUILD_QUALITY_LOW);  // built for every frame
+  add_instance(instant, geometry->fixed_scene, Eigen::Matrix4f::Identity());
+  for (std::size_t i = 0; i < geometry->movable_things.size(); ++i) {
+    const std::uint32_t thing = geometry->movable_things[i];
+    add_instance(
+        instant,
+        geometry->movable_scenes[i],
+        between(exposure.open.T_world_things[thing], exposure.close.T_world_things[thing], time));
+  }
+  instant.people.reserve(people.size());
+  for (std::size_t i = 0; i < people.size(); ++i) {
+    instant.people.push_back(
+        between(packed(people[i].open.positions), packed(people[i].close.positions), time));
+    add_person(instant, instant.people.back(), geometry->world->people[i].body.rest());
+  }
+  rtcCommitScene(instant.scene.get());
+  return instant;
+}
+
+void RayScene::Parts::add_instance(const Instant& instant,
+                                   const Scene& part,
+                                   const Eigen::Matrix4f& T) const {
   const Geometry instance(rtcNewGeometry(geometry->device.get(), RTC_GEOMETRY_TYPE_INSTANCE));
   rtcSetGeometryInstancedScene(instance.get(), part.get());
-  const bool moving = !same_pose(open, close);
-  rtcSetGeometryTimeStepCount(instance.get(), moving ? 2 : 1);
-  set_transform(instance, 0, open);
-  if (moving) set_transform(instance, 1, close);
+  rtcSetGeometryTransform(instance.get(), 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, T.data());
   rtcCommitGeometry(instance.get());
-  rtcAttachGeometry(scene.get(), instance.get());
+  rtcAttachGeometry(instant.scene.get(), instance.get());
 }
 
-void RayScene::Parts::add_person(const PersonSurface& surface, const Mesh& mesh) {
+void RayScene::Parts::add_person(const Instant& instant,
+                                 const std::vector<float>& vertices,
+                                 const Mesh& mesh) const {
   const Geometry person(rtcNewGeometry(geometry->device.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
-  rtcSetGeometryTimeStepCount(person.get(), surface.moves ? 2 : 1);
   rtcSetGeometryBuildQuality(person.get(), RTC_BUILD_QUALITY_LOW);
-  share_vertices(person, 0, surface.open_vertices);
-  if (surface.moves) share_vertices(person, 1, surface.close_vertices);
+  share_vertices(person, vertices);
   share_triangles(person, mesh.triangles);
   rtcCommitGeometry(person.get());
-  rtcAttachGeometry(scene.get(), person.get());
+  rtcAttachGeometry(instant.scene.get(), person.get());
 }
 
 std::uint32_t RayScene::Parts::object_of(unsigned instance, unsigned part) const {
@@ -238,7 +271,7 @@ void set_ray(Rays& packet, std::size_t i, const Ray& ray) {
   packet.dir_z[i] = ray.direction.z();
   packet.tnear[i] = kNearest;
   packet.tfar[i] = ray.reach;
-  packet.time[i] = ray.time;
+  packet.time[i] = 0.F;
   packet.mask[i] = 0xffffffffU;
   packet.flags[i] = 0;
 }
@@ -254,7 +287,10 @@ Lanes used_lanes(std::size_t count) {
 
 }  // namespace
 
-std::array<SurfaceHit, kRays> RayScene::first_hits(std::span<const Ray> rays) const {
+std::array<SurfaceHit, kRays> RayScene::first_hits(std::span<const Ray> rays,
+                                                   std::size_t moment) const {
+  const std::size_t last = parts_->instants.size() - 1;
+  const Parts::Instant& instant = parts_->instants[std::min(moment, last)];
   alignas(32) const Lanes valid = used_lanes(rays.size());
   RTCRayHit8 packet;
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -265,7 +301,7 @@ std::array<SurfaceHit, kRays> RayScene::first_hits(std::span<const Ray> rays) co
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcIntersect8(valid.data(), parts_->scene.get(), &context, &packet);
+  rtcIntersect8(valid.data(), instant.scene.get(), &context, &packet);
   std::array<SurfaceHit, kRays> hits;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
@@ -282,7 +318,7 @@ std::uint32_t RayScene::blocked(std::span<const Ray> rays) const {
   for (std::size_t i = 0; i < rays.size(); ++i) set_ray(packet, i, rays[i]);
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  rtcOccluded8(valid.data(), parts_->scene.get(), &context, &packet);
+  rtcOccluded8(valid.data(), parts_->instants[kMiddle].scene.get(), &context, &packet);
   std::uint32_t bits = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (packet.tfar[i] < 0.F) bits |= 1U << i;

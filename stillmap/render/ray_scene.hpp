@@ -24,12 +24,17 @@ struct Exposure {
   [[nodiscard]] static Exposure still(const Eigen::Isometry3d& T_world_camera, WorldState state);
 };
 
-/// A ray in world axes at a time within the exposure, 0 its beginning and 1 its end.
+/// The times within an exposure at which rays are traced, 0 its beginning and 1 its end: first its
+/// middle, then those at which the four quarters of a pixel are taken. Not in order, so that motion
+/// along neither axis meets a pattern.
+inline constexpr std::array<float, 5> kMoments{0.5F, 0.375F, 0.875F, 0.125F, 0.625F};
+inline constexpr std::size_t kMiddle = 0;
+
+/// A ray in world axes.
 struct Ray {
   Eigen::Vector3f origin = Eigen::Vector3f::Zero();
   Eigen::Vector3f direction = Eigen::Vector3f::Zero();  ///< of any length
-  float time = 0.5F;
-  float reach = 1e9F;  ///< in lengths of `direction`
+  float reach = 1e9F;                                   ///< in lengths of `direction`
 };
 
 /// The surface that a ray meets.
@@ -80,10 +85,13 @@ class RayScene {
   RayScene(const RayScene&) = delete;
   RayScene& operator=(const RayScene&) = delete;
 
-  /// What the rays meet first; at most kRays of them, which should lie close together.
-  [[nodiscard]] std::array<SurfaceHit, kRays> first_hits(std::span<const Ray> rays) const;
+  /// What the rays meet first at kMoments[moment]; at most kRays of them, which should lie close
+  /// together.
+  [[nodiscard]] std::array<SurfaceHit, kRays> first_hits(std::span<const Ray> rays,
+                                                         std::size_t moment = kMiddle) const;
 
-  /// Bit i says whether something lies on ray i within its reach; at most kRays of them.
+  /// Bit i says whether something lies on ray i within its reach, in the exposure's middle; at most
+  /// kRays of them.
   [[nodiscard]] std::uint32_t blocked(std::span<const Ray> rays) const;
 
   [[nodiscard]] SurfaceTriangle triangle(const SurfaceHit& hit) const;

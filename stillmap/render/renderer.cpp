@@ -49,7 +49,7 @@ class Painter {
     if (!surfel.hit.valid()) return Eigen::Vector3f::Zero();
     const SurfaceTriangle triangle = scene_->triangle(surfel.hit);
     const Material& material = world_->materials[triangle.material];
-    const SurfacePatch patch = plain_patch(triangle, material, *camera_, rays);
+    const SurfacePatch patch = PixelSurface(triangle, material, *camera_, rays).whole();
     return in_light(patch, material, lighting_->openness_at(x, y, surfel));
   }
 
@@ -59,13 +59,22 @@ class Painter {
                                       const PixelRays& rays,
                                       const std::array<SurfaceHit, 4>& hits) const {
     Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-    for (std::size_t k = 0; k < 4; ++k) {
-      if (!hits[k].valid()) continue;
-      const SurfaceTriangle triangle = scene_->triangle(hits[k]);
+    std::array<bool, 4> done{};
+    for (std::size_t first = 0; first < 4; ++first) {
+      if (done[first] || !hits[first].valid()) continue;
+      const SurfaceTriangle triangle = scene_->triangle(hits[first]);
       const Material& material = world_->materials[triangle.material];
-      const SurfacePatch patch = quarter_patch(triangle, material, *camera_, rays, k);
-      const Surfel surfel{hits[k], triangle.material, patch.point, patch.normal};
-      sum += in_light(patch, material, lighting_->openness_at(x, y, surfel));
+      const PixelSurface surface(triangle, material, *camera_, rays);
+      // Most often several quarters show the same triangle.
+      for (std::size_t k = first; k < 4; ++k) {
+        const bool same =
+            hits[k].object == hits[first].object && hits[k].triangle == hits[first].triangle;
+        if (!same) continue;
+        done[k] = true;
+        const SurfacePatch patch = surface.quarter(k);
+        const Surfel surfel{hits[k], triangle.material, patch.point, patch.normal};
+        sum += in_light(patch, material, lighting_->openness_at(x, y, surfel));
+      }
     }
     return 0.25F * sum;
   }
@@ -108,9 +117,8 @@ std::vector<std::array<SurfaceHit, 4>> trace_quarters(const RayScene& scene,
         packet[i].origin = moment.origin;
         packet[i].direction =
             moment.R_world_camera * ray_of(quarter_rays(2 * p.y + dy, 2 * p.x + dx));
-        packet[i].time = moment.time;
       }
-      const std::array<SurfaceHit, kRays> found = scene.first_hits({packet.data(), count});
+      const std::array<SurfaceHit, kRays> found = scene.first_hits({packet.data(), count}, k + 1);
       for (std::size_t i = 0; i < count; ++i) hits[first + i][k] = found[i];
     }
   }

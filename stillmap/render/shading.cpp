@@ -19,55 +19,6 @@ Moment moment_at(const Exposure& exposure, double time) {
           static_cast<float>(time)};
 }
 
-// A triangle's plane at one time, ready to be met by rays.
-struct TrianglePlane {
-  Eigen::Vector3f corner, edge_u, edge_v, normal;
-  Eigen::Vector3f dual_u, dual_v;  // their products with a point's offset are its coordinates
-
-  TrianglePlane(const SurfaceTriangle& t, float time) {
-    const auto at = [&](std::size_t k) {
-      return t.moves ? Eigen::Vector3f((1 - time) * t.open[k] + time * t.close[k]) : t.open[k];
-    };
-    corner = at(0);
-    edge_u = at(1) - corner;
-    edge_v = at(2) - corner;
-    normal = edge_u.cross(edge_v);
-    const float scale = 1.F / std::max(normal.squaredNorm(), 1e-30F);
-    dual_u = scale * edge_v.cross(normal);
-    dual_v = scale * normal.cross(edge_u);
-  }
-
-  [[nodiscard]] Eigen::Vector2f coordinates(const Eigen::Vector3f& step) const {
-    return {dual_u.dot(step), dual_v.dot(step)};
-  }
-};
-
-// Where a ray meets a triangle's plane; not held to the triangle.
-struct PlaneMeeting {
-  Eigen::Vector3f direction;
-  float inverse_along;  // 1 / (normal . direction)
-  float t;
-  Eigen::Vector2f at;  // barycentric
-
-  PlaneMeeting(const TrianglePlane& plane,
-               const Eigen::Vector3f& origin,
-               const Eigen::Vector3f& ray_direction)
-      : direction(ray_direction) {
-    const Eigen::Vector3f offset = origin - plane.corner;
-    const float along = plane.normal.dot(direction);
-    inverse_along = 1.F / (std::abs(along) > 1e-20F ? along : 1e-20F);
-    t = -plane.normal.dot(offset) * inverse_along;
-    at = plane.coordinates(offset + t * direction);
-  }
-
-  // How far the meeting moves on the plane, to first order, when the point that the ray had here
-  // moves by `step`.
-  [[nodiscard]] Eigen::Vector2f shift(const TrianglePlane& plane,
-                                      const Eigen::Vector3f& step) const {
-    return plane.coordinates(step - plane.normal.dot(step) * inverse_along * direction);
-  }
-};
-
 Eigen::Vector2f uv_at(const SurfaceTriangle& t, const Eigen::Vector2f& b) {
   return t.uvs[0] + b.x() * (t.uvs[1] - t.uvs[0]) + b.y() * (t.uvs[2] - t.uvs[0]);
 }
@@ -89,7 +40,7 @@ Eigen::Vector3f point_at(const TrianglePlane& plane, const Eigen::Vector2f& b) {
 }
 
 // The pyramid's level whose texels are as wide as the longest of some steps on the picture.
-float longest_step_level(const MipTexture& texture, const std::array<Eigen::Vector2f, 3>& steps) {
+float mip_level(const MipTexture& texture, const std::array<Eigen::Vector2f, 3>& steps) {
   const Eigen::Vector2f size(static_cast<float>(texture.width()),
                              static_cast<float>(texture.height()));
   float longest = 0.F;
@@ -115,35 +66,6 @@ Eigen::Vector3f surface_motion(const SurfaceTriangle& t, const Eigen::Vector2f& 
          b.y() * (t.close[2] - t.open[2]);
 }
 
-// What a pixel covers of a triangle's plane half way through the exposure: its middle on the
-// picture, the steps from one quarter to the next, and how far the picture moves.
-struct Footprint {
-  TrianglePlane plane;
-  PlaneMeeting middle;
-  Eigen::Vector2f across, down;
-  Eigen::Vector2f motion = Eigen::Vector2f::Zero();
-
-  Footprint(const SurfaceTriangle& triangle, const MovingCamera& camera, const PixelRays& rays)
-      : plane(triangle, 0.5F),
-        middle(plane, camera.middle.origin, camera.middle.R_world_camera * rays.center) {
-    const Eigen::Matrix3f& R = camera.middle.R_world_camera;
-    const auto step_to = [&](const Eigen::Vector3f& camera_step) {
-      return uv_step(triangle, middle.shift(plane, middle.t * (R * camera_step)));
-    };
-    across = step_to(rays.quarters[1] - rays.quarters[0]);
-    down = step_to(rays.quarters[2] - rays.quarters[0]);
-    if (!camera.moves && !triangle.moves) return;
-    Eigen::Vector3f step = Eigen::Vector3f::Zero();
-    if (camera.moves) step = camera.translation + middle.t * (camera.turn * rays.center);
-    if (triangle.moves) step -= surface_motion(triangle, middle.at);
-    motion = uv_step(triangle, middle.shift(plane, step));
-  }
-
-  [[nodiscard]] float mip_level(const MipTexture& texture) const {
-    return longest_step_level(texture, {across, down, 0.25F * motion});
-  }
-};
-
 }  // namespace
 
 MovingCamera::MovingCamera(const Exposure& exposure)
@@ -155,49 +77,61 @@ MovingCamera::MovingCamera(const Exposure& exposure)
       translation(close.origin - open.origin),
       turn(close.R_world_camera - open.R_world_camera),
       moves(exposure.T_world_camera_open.matrix() != exposure.T_world_camera_close.matrix()) {
-  // Not in the order of the quarters, so that motion along neither axis meets a pattern.
-  constexpr std::array<double, 4> kTimes{0.375, 0.875, 0.125, 0.625};
   for (std::size_t k = 0; k < 4; ++k) {
-    quarters[k] = moves ? moment_at(exposure, kTimes[k]) : middle;
-    quarters[k].time = static_cast<float>(kTimes[k]);
+    quarters[k] = moves ? moment_at(exposure, kMoments[k + 1]) : middle;
+    quarters[k].time = kMoments[k + 1];
   }
 }
 
-SurfacePatch plain_patch(const SurfaceTriangle& triangle,
-                         const Material& material,
-                         const MovingCamera& camera,
-                         const PixelRays& rays) {
-  const Footprint footprint(triangle, camera, rays);
-  const Eigen::Vector2f center = uv_at(triangle, footprint.middle.at);
-  std::array<TexturePoint, 4> at;
-  for (std::size_t k = 0; k < 4; ++k) {
-    const Eigen::Vector2f uv = center + (k % 2 == 0 ? -0.5F : 0.5F) * footprint.across +
-                               (k < 2 ? -0.5F : 0.5F) * footprint.down +
-                               (camera.quarters[k].time - 0.5F) * footprint.motion;
-    at[k] = {uv.x(), uv.y()};
-  }
-  const TexelSum sum =
-      material.texture.sample_four(at, footprint.mip_level(material.texture), material.repeats);
-  return {to_color(sum, 1.F / (4.F * 256.F)),
-          point_at(footprint.plane, footprint.middle.at),
-          normal_at(triangle, footprint.middle.at, footprint.middle.direction)};
-}
-
-SurfacePatch quarter_patch(const SurfaceTriangle& triangle,
+PixelSurface::PixelSurface(const SurfaceTriangle& triangle,
                            const Material& material,
                            const MovingCamera& camera,
-                           const PixelRays& rays,
-                           std::size_t quarter) {
-  const Footprint footprint(triangle, camera, rays);
-  const Moment& moment = camera.quarters[quarter];
-  const TrianglePlane plane(triangle, moment.time);
-  const PlaneMeeting meeting(plane, moment.origin, moment.R_world_camera * rays.quarters[quarter]);
-  const Eigen::Vector2f uv = uv_at(triangle, meeting.at);
-  const TexelSum texel = material.texture.sample(
-      {uv.x(), uv.y()}, footprint.mip_level(material.texture), material.repeats);
+                           const PixelRays& rays)
+    : triangle_(&triangle),
+      material_(&material),
+      camera_(&camera),
+      rays_(&rays),
+      plane_(triangle, kMoments[kMiddle]),
+      middle_(plane_, camera.middle.origin, camera.middle.R_world_camera * rays.center) {
+  const Eigen::Matrix3f& R = camera.middle.R_world_camera;
+  const auto step_to = [&](const Eigen::Vector3f& camera_step) {
+    return uv_step(triangle, middle_.shift(plane_, middle_.t * (R * camera_step)));
+  };
+  across_ = step_to(rays.quarters[1] - rays.quarters[0]);
+  down_ = step_to(rays.quarters[2] - rays.quarters[0]);
+  if (camera.moves || triangle.moves) {
+    Eigen::Vector3f step = Eigen::Vector3f::Zero();
+    if (camera.moves) step = camera.translation + middle_.t * (camera.turn * rays.center);
+    if (triangle.moves) step -= surface_motion(triangle, middle_.at);
+    motion_ = uv_step(triangle, middle_.shift(plane_, step));
+  }
+  level_ = mip_level(material.texture, {across_, down_, 0.25F * motion_});
+}
+
+SurfacePatch PixelSurface::whole() const {
+  const Eigen::Vector2f center = uv_at(*triangle_, middle_.at);
+  std::array<TexturePoint, 4> at;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Eigen::Vector2f uv = center + (k % 2 == 0 ? -0.5F : 0.5F) * across_ +
+                               (k < 2 ? -0.5F : 0.5F) * down_ +
+                               (camera_->quarters[k].time - 0.5F) * motion_;
+    at[k] = {uv.x(), uv.y()};
+  }
+  const TexelSum sum = material_->texture.sample_four(at, level_, material_->repeats);
+  return {to_color(sum, 1.F / (4.F * 256.F)),
+          point_at(plane_, middle_.at),
+          normal_at(*triangle_, middle_.at, middle_.direction)};
+}
+
+SurfacePatch PixelSurface::quarter(std::size_t k) const {
+  const Moment& moment = camera_->quarters[k];
+  const TrianglePlane plane = triangle_->moves ? TrianglePlane(*triangle_, moment.time) : plane_;
+  const PlaneMeeting meeting(plane, moment.origin, moment.R_world_camera * rays_->quarters[k]);
+  const Eigen::Vector2f uv = uv_at(*triangle_, meeting.at);
+  const TexelSum texel = material_->texture.sample({uv.x(), uv.y()}, level_, material_->repeats);
   return {to_color(texel, 1.F / 256.F),
           point_at(plane, meeting.at),
-          normal_at(triangle, meeting.at, meeting.direction)};
+          normal_at(*triangle_, meeting.at, meeting.direction)};
 }
 
 Eigen::Vector3f lit(const Eigen::Vector3f& albedo, const Material& material, float light) {

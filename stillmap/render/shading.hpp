@@ -5,6 +5,7 @@
 
 #include "stillmap/render/lighting.hpp"
 #include "stillmap/render/ray_scene.hpp"
+#include "stillmap/render/triangle_plane.hpp"
 
 namespace stillmap {
 
@@ -40,18 +41,35 @@ struct SurfacePatch {
   Eigen::Vector3f normal;  ///< of the smooth surface, towards the camera
 };
 
-/// A pixel all of which shows the plane of `triangle` during the whole exposure.
-[[nodiscard]] SurfacePatch plain_patch(const SurfaceTriangle& triangle,
-                                       const Material& material,
-                                       const MovingCamera& camera,
-                                       const PixelRays& rays);
+/// What a pixel covers of a triangle's plane during an exposure: its middle on the picture, the
+/// steps from one quarter to the next, and how far the picture moves.
+class PixelSurface {
+ public:
+  /// The arguments must outlive this.
+  PixelSurface(const SurfaceTriangle& triangle,
+               const Material& material,
+               const MovingCamera& camera,
+               const PixelRays& rays);
 
-/// What a pixel's quarter number `quarter` shows of the plane of `triangle`.
-[[nodiscard]] SurfacePatch quarter_patch(const SurfaceTriangle& triangle,
-                                         const Material& material,
-                                         const MovingCamera& camera,
-                                         const PixelRays& rays,
-                                         std::size_t quarter);
+  /// For a pixel all of which shows the plane during the whole exposure.
+  [[nodiscard]] SurfacePatch whole() const;
+
+  /// What quarter k of the pixel shows of the plane at its moment.
+  [[nodiscard]] SurfacePatch quarter(std::size_t k) const;
+
+  [[nodiscard]] const Material& material() const { return *material_; }
+
+ private:
+  const SurfaceTriangle* triangle_;
+  const Material* material_;
+  const MovingCamera* camera_;
+  const PixelRays* rays_;
+  TrianglePlane plane_;
+  PlaneMeeting middle_;
+  Eigen::Vector2f across_, down_;  // from one quarter to the next, on the picture
+  Eigen::Vector2f motion_ = Eigen::Vector2f::Zero();
+  float level_ = 0.F;
+};
 
 /// What a camera records of `albedo` in a light.
 [[nodiscard]] Eigen::Vector3f lit(const Eigen::Vector3f& albedo,
