@@ -25,10 +25,11 @@ struct Exposure {
 };
 
 /// The times within an exposure at which rays are traced, 0 its beginning and 1 its end: first its
-/// middle, then those at which the four quarters of a pixel are taken. Not in order, so that motion
-/// along neither axis meets a pattern.
-inline constexpr std::array<float, 5> kMoments{0.5F, 0.375F, 0.875F, 0.125F, 0.625F};
+/// middle, then the middles of its halves.
+inline constexpr std::array<float, 3> kMoments{0.5F, 0.25F, 0.75F};
 inline constexpr std::size_t kMiddle = 0;
+/// At which of them each quarter of a pixel is taken, in rows: a diagonal each.
+inline constexpr std::array<std::size_t, 4> kQuarterMoments{1, 2, 2, 1};
 
 /// A ray in world axes.
 struct Ray {

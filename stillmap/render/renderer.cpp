@@ -118,7 +118,8 @@ std::vector<std::array<SurfaceHit, 4>> trace_quarters(const RayScene& scene,
         packet[i].direction =
             moment.R_world_camera * ray_of(quarter_rays(2 * p.y + dy, 2 * p.x + dx));
       }
-      const std::array<SurfaceHit, kRays> found = scene.first_hits({packet.data(), count}, k + 1);
+      const std::array<SurfaceHit, kRays> found =
+          scene.first_hits({packet.data(), count}, kQuarterMoments[k]);
       for (std::size_t i = 0; i < count; ++i) hits[first + i][k] = found[i];
     }
   }

@@ -78,8 +78,9 @@ MovingCamera::MovingCamera(const Exposure& exposure)
       turn(close.R_world_camera - open.R_world_camera),
       moves(exposure.T_world_camera_open.matrix() != exposure.T_world_camera_close.matrix()) {
   for (std::size_t k = 0; k < 4; ++k) {
-    quarters[k] = moves ? moment_at(exposure, kMoments[k + 1]) : middle;
-    quarters[k].time = kMoments[k + 1];
+    const float time = kMoments[kQuarterMoments[k]];
+    quarters[k] = moves ? moment_at(exposure, time) : middle;
+    quarters[k].time = time;
   }
 }
 

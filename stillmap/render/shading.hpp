@@ -26,7 +26,7 @@ class MovingCamera {
     Eigen::Vector3f origin;
     float time;
   };
-  /// The four times at which a pixel's quarters are taken, spread over the exposure.
+  /// When a pixel's quarters are taken.
   std::array<Moment, 4> quarters;
   Moment open, middle, close;
   Eigen::Vector3f translation;  ///< from open to close
