@@ -2,13 +2,18 @@
 #include "stillmap/synth/sequence_writer.hpp"
 
 #include <filesystem>
+#include <map>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
 
 #include "stillmap/core/se3.hpp"
+#include "stillmap/detections/detections_io.hpp"
 #include "stillmap/io/atomic_file.hpp"
+#include "stillmap/io/image_io.hpp"
 #include "stillmap/io/io_test_support.hpp"
+#include "stillmap/io/ply.hpp"
 #include "stillmap/io/trajectory_io.hpp"
 #include "stillmap/io/tum_sequence.hpp"
 #include "stillmap/synth/scene_names.hpp"
@@ -77,6 +82,85 @@ TEST(WriteSequence, HasTheListsOfTheLayout) {
             "1000.033333 depth/1000.033333.png\n"
             "1000.066667 depth/1000.066667.png\n"
             "1000.100000 depth/1000.100000.png\n");
+}
+
+SyntheticSequence walking_sequence(std::uint32_t seed = 9) {
+  SyntheticOptions options;
+  options.camera = synthetic_camera(160, 120);
+  options.activity = Activity::kWalking;
+  options.frames = 4;
+  options.frames_per_second = 1.0;  // so that much happens in a few frames
+  options.seed = seed;
+  return SyntheticSequence(options);
+}
+
+TEST(WriteSequence, WritesWhoIsWhere) {
+  const TemporaryFolder folder;
+  const SyntheticSequence sequence = walking_sequence();
+  write_sequence(sequence, folder.path());
+  const fs::path truth = folder.path() / "truth";
+  const nlohmann::json json = nlohmann::json::parse(read_file(truth / "objects.json", 1000000));
+  ASSERT_EQ(json["frames"].size(), 4U);
+  std::map<int, bool> moved;
+  for (const nlohmann::json& object : json["objects"]) {
+    moved[object["id"].get<int>()] = object["moved"].get<bool>();
+    EXPECT_TRUE(object["movable"].get<bool>());
+  }
+  EXPECT_EQ(
+      moved,
+      (std::map<int, bool>{
+          {1, true}, {2, true}, {3, true}, {10, false}, {11, false}, {12, true}, {13, true}}));
+  for (std::uint32_t k = 0; k < 4; ++k) {
+    const std::string stamp = sequence.stamp(FrameId(k)).text;
+    EXPECT_EQ(json["frames"][k]["stamp"], stamp);
+    const cv::Mat1b mask = read_mask(truth / "masks" / (stamp + ".png"));
+    for (const nlohmann::json& object : json["frames"][k]["objects"]) {
+      EXPECT_EQ(object["pixels"].get<int>(), cv::countNonZero(mask == object["id"].get<int>()));
+    }
+  }
+  EXPECT_GT(read_ply(truth / "static_map.ply").size(), 5000U);
+  EXPECT_GT(read_ply(truth / "dynamic_map.ply").size(), 1000U);
+}
+
+TEST(WriteSequence, WritesTheSameBytesWithAnyNumberOfThreads) {
+  const TemporaryFolder one, three;
+  const WriteOptions options{.threads = 1, .detections = DetectionKind::kImperfect};
+  write_sequence(walking_sequence(), one.path(), options);
+  write_sequence(walking_sequence(), three.path(), {3, DetectionKind::kImperfect});
+  std::size_t files = 0;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(one.path())) {
+    if (!entry.is_regular_file()) continue;
+    ++files;
+    const fs::path other = three.path() / fs::relative(entry.path(), one.path());
+    EXPECT_EQ(read_file(entry.path(), 10000000), read_file(other, 10000000)) << other;
+  }
+  EXPECT_GE(files, 4U * 4U + 5U + 4U);
+}
+
+TEST(WriteSequence, MakesDetectionsOfTheTruth) {
+  const TemporaryFolder perfect, imperfect;
+  const SyntheticSequence sequence = walking_sequence();
+  write_sequence(sequence, perfect.path(), {1, DetectionKind::kPerfect});
+  write_sequence(sequence, imperfect.path(), {1, DetectionKind::kImperfect});
+  const cv::Size image(160, 120);
+  const auto whole = DetectionsFolder::open(perfect.path() / "detections", image);
+  const auto faulty = DetectionsFolder::open(imperfect.path() / "detections", image);
+  ASSERT_EQ(whole.size(), 4U);
+  ASSERT_EQ(faulty.size(), 4U);
+  int differ = 0;
+  for (std::uint32_t k = 0; k < 4; ++k) {
+    const Stamp stamp = sequence.stamp(FrameId(k));
+    const cv::Mat1b truth = read_mask(perfect.path() / "truth" / "masks" / (stamp.text + ".png"));
+    const FrameDetections found = whole.at(stamp);
+    for (const DetectedObject& object : found.objects) {
+      EXPECT_EQ(cv::countNonZero((found.mask.mat == object.id) != (truth == object.id)), 0);
+    }
+    const FrameDetections network = faulty.at(stamp);
+    const bool same = !network.mask.mat.empty() && !found.mask.mat.empty() &&
+                      cv::countNonZero((network.mask.mat > 0) != (found.mask.mat > 0)) == 0;
+    differ += same ? 0 : 1;
+  }
+  EXPECT_GE(differ, 3);
 }
 
 std::string error_of(const fs::path& folder) {
