@@ -32,7 +32,7 @@ demo: build $(demo)/sequence
 # Rendered under another name first, so that an interrupted one is not taken for the whole.
 $(demo)/sequence: | build
 	@rm -rf $@ $@.partial && mkdir -p $(demo)
-	@$(program) synth $@.partial --scene empty --frames 150
+	@$(program) synth $@.partial --scene walking_xyz --frames 150 --detections imperfect
 	@mv $@.partial $@
 
 bench: setup
