@@ -1,27 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <opencv2/core/mat.hpp>
-
-#include "stillmap/detections/detections.hpp"
 #include "stillmap/dynamics/frame_objects.hpp"
 #include "stillmap/dynamics/object_depth.hpp"
+#include "stillmap/dynamics/object_view.hpp"
 
 namespace stillmap {
-
-/// Some pixels of an image: those of `area` that are not 0 in `pixels`, which is of its size.
-struct PixelPatch {
-  cv::Rect area;
-  cv::Mat1b pixels;
-};
-
-/// An object as a frame has it.
-struct ObjectView {
-  const DepthImage& depth;
-  const ObjectMask& mask;
-  int id = 0;
-  PixelBox box;
-};
 
 struct CarryRule {
   double depth_margin_m = 0.15;  ///< how far the object may have come nearer or gone since
