@@ -120,22 +120,12 @@ std::vector<ObjectState> DynamicObjects::judge_states(const FrameObjects& object
   }
   std::vector<ObjectState> states;
   for (std::size_t i = 0; i < objects.objects.size(); ++i) {
-    const TrackedObject& object = objects.objects[i];
-    ObjectState state;
-    state.track = object.track;
-    state.category = categories_.of(object.detection.class_name);
-    state.box = object.detection.box;
-    state.filled = object.filled.has_value();
-    state.depths = depths[i].interval;
-    if (state.category == Category::kDynamic) {
-      state.reason = StateReason::kDynamicClass;
-      state.dynamic = true;
-    } else if (state.category == Category::kPotentiallyDynamic) {
+    ObjectState state = state_by_class(objects.objects[i], depths[i]);
+    if (state.category == Category::kPotentiallyDynamic && mode_ != DynamicsMode::kMask) {
       const Interaction touch = judge_interaction({state.box, state.depths}, people);
-      const bool asked = mode_ != DynamicsMode::kMask;
-      state.reason = asked ? reason_of(touch.contact) : StateReason::kNotAsked;
-      state.dynamic = asked && touch.interacts();
-      if (asked && touch.person) state.person = people_tracks[*touch.person];
+      state.reason = reason_of(touch.contact);
+      state.dynamic = touch.interacts();
+      if (touch.person) state.person = people_tracks[*touch.person];
     }
     const bool moves = std::ranges::find(moving, state.track) != moving.end();
     if (mode_ == DynamicsMode::kFull && moves && !state.dynamic) {
@@ -145,6 +135,21 @@ std::vector<ObjectState> DynamicObjects::judge_states(const FrameObjects& object
     states.push_back(state);
   }
   return states;
+}
+
+ObjectState DynamicObjects::state_by_class(const TrackedObject& object,
+                                           const ObjectDepths& depths) const {
+  ObjectState state;
+  state.track = object.track;
+  state.category = categories_.of(object.detection.class_name);
+  state.dynamic = state.category == Category::kDynamic;
+  if (state.dynamic) state.reason = StateReason::kDynamicClass;
+  if (state.category == Category::kPotentiallyDynamic) state.reason = StateReason::kNotAsked;
+  state.box = object.detection.box;
+  state.filled = object.filled.has_value();
+  state.depths = depths.interval;
+  state.median_depth_m = depths.median_m;
+  return state;
 }
 
 cv::Mat1b DynamicObjects::extended_mask(const DepthImage& depth,

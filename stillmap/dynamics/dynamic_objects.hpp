@@ -63,6 +63,7 @@ struct ObjectState {
   PixelBox box;
   bool filled = false;                  ///< the network has missed it
   std::optional<DepthInterval> depths;  ///< of its mask, outliers removed
+  float median_depth_m = 0;             ///< of its mask; 0 where nothing is measured
 };
 
 /// The pixels of a frame that must not be taken as static. All of the image's size.
@@ -107,6 +108,8 @@ class DynamicObjects {
   [[nodiscard]] std::vector<ObjectState> judge_states(const FrameObjects& objects,
                                                       const std::vector<ObjectDepths>& depths,
                                                       std::span<const TrackId> moving) const;
+  [[nodiscard]] ObjectState state_by_class(const TrackedObject& object,
+                                           const ObjectDepths& depths) const;
   [[nodiscard]] cv::Mat1b extended_mask(const DepthImage& depth,
                                         const FrameObjects& objects,
                                         const MaskAreas& areas,
