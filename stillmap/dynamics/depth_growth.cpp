@@ -95,14 +95,10 @@ class GrowthGrid {
 
   [[nodiscard]] PixelPatch pixels(const cv::Rect& area) const {
     PixelPatch patch{area, cv::Mat1b(area.size(), std::uint8_t{0})};
-    for (int v = 0; v < area.height; ++v) {
-      const int y = area.y + v;
-      const float* depth = object_.depth.mat[y];
-      const std::uint8_t* ids = object_.mask.mat[y];
-      for (int u = 0; u < area.width; ++u) {
-        const int x = area.x + u;
-        const Cell& cell = at(index((y - y0_) / 2, (x - x0_) / 2));
-        patch.pixels(v, u) = belongs(cell, depth[x], ids[x] == object_.id) ? 1 : 0;
+    for (int row = 0; row < rows_; ++row) {
+      const Cell* cells = &at(index(row, 0));
+      for (int column = 0; column < columns_; ++column) {
+        if (cells[column].part != 0 || cells[column].mask) copy_cell(row, column, patch);
       }
     }
     return patch;
@@ -199,6 +195,23 @@ class GrowthGrid {
       }
     }
     return rim == 0 ? 0.0 : static_cast<double>(ours) / static_cast<double>(rim);
+  }
+
+  /// Decides on each of the cell's four pixels.
+  void copy_cell(int row, int column, PixelPatch& patch) const {
+    const Cell& cell = at(index(row, column));
+    const int left = std::max(x0_ + 2 * column, patch.area.x);
+    const int right = std::min(x0_ + 2 * column + 2, patch.area.x + patch.area.width);
+    const int top = std::max(y0_ + 2 * row, patch.area.y);
+    const int bottom = std::min(y0_ + 2 * row + 2, patch.area.y + patch.area.height);
+    for (int y = top; y < bottom; ++y) {
+      const float* depth = object_.depth.mat[y];
+      const std::uint8_t* ids = object_.mask.mat[y];
+      std::uint8_t* pixels = patch.pixels[y - patch.area.y] - patch.area.x;
+      for (int x = left; x < right; ++x) {
+        pixels[x] = belongs(cell, depth[x], ids[x] == object_.id) ? 1 : 0;
+      }
+    }
   }
 
   [[nodiscard]] bool belongs(const Cell& cell, float depth, bool mask) const {

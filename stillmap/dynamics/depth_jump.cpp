@@ -20,30 +20,56 @@ struct Nearest {
   int known = 0;  // cells
 };
 
-/// The least and greatest known depth of the three cells around each of a row.
-void widen_row(const cv::Mat1f& cells, int row, std::vector<Nearest>& result) {
-  const float* z = cells[row];
-  for (int c = 0; c < cells.cols; ++c) {
-    Nearest n;
-    for (int k = std::max(0, c - 1); k <= std::min(cells.cols - 1, c + 1); ++k) {
-      if (!(z[k] > 0)) continue;
-      n.min_m = std::min(n.min_m, z[k]);
-      n.max_m = std::max(n.max_m, z[k]);
+/// The least and greatest known depth of the nine cells around one.
+Nearest around(const cv::Mat1f& cells, int row, int column) {
+  Nearest n;
+  for (int r = std::max(0, row - 1); r <= std::min(cells.rows - 1, row + 1); ++r) {
+    const float* z = cells[r];
+    for (int c = std::max(0, column - 1); c <= std::min(cells.cols - 1, column + 1); ++c) {
+      if (!(z[c] > 0)) continue;
+      n.min_m = std::min(n.min_m, z[c]);
+      n.max_m = std::max(n.max_m, z[c]);
       ++n.known;
     }
-    result[static_cast<std::size_t>(c)] = n;
   }
+  return n;
 }
 
-std::uint8_t jump_of(float z, const Nearest& expected, const DepthJumpConfig& config) {
-  if (!(z > 0)) return kNoJump;
-  const auto limit =
-      static_cast<float>(config.jump_m) + static_cast<float>(config.jump_per_m) * z * z;
-  if (z < expected.min_m - limit) return kCameNearer;
-  // Beside an edge, a strip comes into view because the camera moves: nothing is known of it.
-  const bool seen_before = expected.known >= 7;
-  return config.revealed && seen_before && z > expected.max_m + limit ? kWentFarther : kNoJump;
-}
+/// Finds the jumps of a row of cells, that is of two rows of pixels.
+class JumpRow {
+ public:
+  JumpRow(const cv::Mat1f& cells, const DepthJumpConfig& config)
+      : cells_(cells),
+        config_(config),
+        base_(static_cast<float>(config.jump_m)),
+        growth_(static_cast<float>(config.jump_per_m)) {}
+
+  void mark(const float* depth, int row, std::uint8_t* jumps, int columns) const {
+    const float* expected = cells_[row];
+    for (int x = 0; x < columns; ++x) {
+      const float z = depth[x];
+      const float before = expected[x / 2];
+      // Few differ from their own cell: only these are worth looking around for.
+      const float change = config_.revealed ? std::abs(before - z) : before - z;
+      if (!(change > base_ + growth_ * z * z) || !(z > 0) || !(before > 0)) continue;
+      jumps[x] = jump_of(z, around(cells_, row, x / 2));
+    }
+  }
+
+ private:
+  [[nodiscard]] std::uint8_t jump_of(float z, const Nearest& expected) const {
+    const float limit = base_ + growth_ * z * z;
+    if (z < expected.min_m - limit) return kCameNearer;
+    // Beside an edge, a strip comes into view because the camera moves: nothing is known of it.
+    const bool seen_before = expected.known >= 7;
+    const bool gone = config_.revealed && seen_before && z > expected.max_m + limit;
+    return gone ? kWentFarther : kNoJump;
+  }
+
+  const cv::Mat1f& cells_;
+  const DepthJumpConfig& config_;
+  float base_, growth_;
+};
 
 }  // namespace
 
@@ -67,46 +93,66 @@ cv::Mat1b depth_jumps(const DepthImage& current, const DepthImage& previous, dou
 }
 
 DepthWarper::DepthWarper(const CameraModel& camera)
-    : camera_(camera), rays_(cells_in(camera.height_px), cells_in(camera.width_px)) {
-  const cv::Mat2f all = pixel_rays(camera);
-  for (int row = 0; row < rays_.rows; ++row) {
-    for (int c = 0; c < rays_.cols; ++c) rays_(row, c) = all(2 * row, 2 * c);
+    : camera_(camera),
+      ray_x_(cells_in(camera.height_px), cells_in(camera.width_px)),
+      ray_y_(ray_x_.size()) {
+  const cv::Mat2f rays = pixel_rays(camera);
+  for (int row = 0; row < ray_x_.rows; ++row) {
+    for (int c = 0; c < ray_x_.cols; ++c) {
+      ray_x_(row, c) = rays(2 * row, 2 * c)[0];
+      ray_y_(row, c) = rays(2 * row, 2 * c)[1];
+    }
   }
 }
 
 WarpedDepth DepthWarper::warp(const DepthImage& previous,
                               const Eigen::Isometry3d& T_current_previous) const {
   STILLMAP_CHECK(previous.mat.rows == camera_.height_px && previous.mat.cols == camera_.width_px);
-  const Eigen::Matrix3f R = T_current_previous.linear().cast<float>();
-  const Eigen::Vector3f t = T_current_previous.translation().cast<float>();
-  const auto fx = static_cast<float>(camera_.fx / 2), fy = static_cast<float>(camera_.fy / 2);
-  // A half more: to truncate is then to round to the nearest cell.
-  const auto cx = static_cast<float>(camera_.cx / 2 + 0.5),
-             cy = static_cast<float>(camera_.cy / 2 + 0.5);
-  const auto k1 = static_cast<float>(camera_.k1), k2 = static_cast<float>(camera_.k2);
-  const auto k3 = static_cast<float>(camera_.k3), p1 = static_cast<float>(camera_.p1);
-  const auto p2 = static_cast<float>(camera_.p2);
-  WarpedDepth warped{cv::Mat1f(rays_.size(), 0.0F)};
-  const auto columns = static_cast<float>(rays_.cols), rows = static_cast<float>(rays_.rows);
-  for (int row = 0; row < rays_.rows; ++row) {
+  const Eigen::Matrix<float, 3, 4> T = T_current_previous.matrix().topRows<3>().cast<float>();
+  WarpedDepth warped{cv::Mat1f(ray_x_.size(), 0.0F)};
+  const auto columns = static_cast<float>(ray_x_.cols), rows = static_cast<float>(ray_x_.rows);
+  const auto width = static_cast<std::size_t>(ray_x_.cols);
+  std::vector<float> u(width), v(width), z(width);
+  for (int row = 0; row < ray_x_.rows; ++row) {
     const float* depth = previous.mat[2 * row];
-    const cv::Vec2f* rays = rays_[row];
-    for (int c = 0; c < rays_.cols; ++c) {
-      const float z = depth[2 * c];
-      if (!(z > 0)) continue;
-      const Eigen::Vector3f p = R * Eigen::Vector3f(rays[c][0] * z, rays[c][1] * z, z) + t;
-      if (!(p.z() > 0.01F)) continue;
-      const float x = p.x() / p.z(), y = p.y() / p.z();
-      const float r2 = x * x + y * y;
-      const float radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3));
-      const float u = fx * (x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x)) + cx;
-      const float v = fy * (y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y) + cy;
-      if (!(u >= 0 && v >= 0 && u < columns && v < rows)) continue;
-      float& cell = warped.mat(static_cast<int>(v), static_cast<int>(u));
-      if (cell == 0 || p.z() < cell) cell = p.z();
+    for (std::size_t c = 0; c < width; ++c) z[c] = depth[2 * c];
+    project_row(T, ray_x_[row], ray_y_[row], {u.data(), v.data(), z.data(), width});
+    for (std::size_t c = 0; c < width; ++c) {
+      const bool inside = u[c] >= 0 && v[c] >= 0 && u[c] < columns && v[c] < rows;
+      if (!inside || !(depth[2 * c] > 0) || !(z[c] > 0.01F)) continue;
+      float& cell = warped.mat(static_cast<int>(v[c]), static_cast<int>(u[c]));
+      if (cell == 0 || z[c] < cell) cell = z[c];
     }
   }
   return warped;
+}
+
+void DepthWarper::project_row(const Eigen::Matrix<float, 3, 4>& T,
+                              const float* ray_x,
+                              const float* ray_y,
+                              const Row& row) const {
+  const auto fx = static_cast<float>(camera_.fx / 2), fy = static_cast<float>(camera_.fy / 2);
+  // A half more: to truncate is then to round to the nearest cell.
+  const auto cx = static_cast<float>(camera_.cx / 2 + 0.5);
+  const auto cy = static_cast<float>(camera_.cy / 2 + 0.5);
+  const auto k1 = static_cast<float>(camera_.k1), k2 = static_cast<float>(camera_.k2);
+  const auto k3 = static_cast<float>(camera_.k3);
+  const auto p1 = static_cast<float>(camera_.p1), p2 = static_cast<float>(camera_.p2);
+  const float a = T(0, 0), b = T(0, 1), c = T(0, 2), d = T(0, 3);
+  const float e = T(1, 0), f = T(1, 1), g = T(1, 2), h = T(1, 3);
+  const float i = T(2, 0), j = T(2, 1), k = T(2, 2), l = T(2, 3);
+  for (std::size_t n = 0; n < row.size; ++n) {  // without a branch, so that it runs on vectors
+    const float z = row.z[n];
+    const float px = ray_x[n] * z, py = ray_y[n] * z;
+    const float depth = i * px + j * py + k * z + l;
+    const float x = (a * px + b * py + c * z + d) / depth;
+    const float y = (e * px + f * py + g * z + h) / depth;
+    const float r2 = x * x + y * y;
+    const float radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3));
+    row.u[n] = fx * (x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x)) + cx;
+    row.v[n] = fy * (y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y) + cy;
+    row.z[n] = depth;
+  }
 }
 
 cv::Mat1b depth_jumps(const DepthImage& current,
@@ -116,27 +162,9 @@ cv::Mat1b depth_jumps(const DepthImage& current,
   STILLMAP_CHECK(cells.rows == cells_in(current.mat.rows) &&
                  cells.cols == cells_in(current.mat.cols));
   cv::Mat1b jumps(current.mat.size(), std::uint8_t{kNoJump});
-  const auto width = static_cast<std::size_t>(cells.cols);
-  std::vector<Nearest> above(width), here(width), below(width);
-  widen_row(cells, 0, below);
-  for (int row = 0; row < cells.rows; ++row) {
-    above.swap(here);
-    here.swap(below);
-    std::ranges::fill(below, Nearest{});
-    if (row + 1 < cells.rows) widen_row(cells, row + 1, below);
-    for (int c = 0; c < cells.cols; ++c) {
-      if (!(cells(row, c) > 0)) continue;
-      const auto k = static_cast<std::size_t>(c);
-      const Nearest around{std::min({above[k].min_m, here[k].min_m, below[k].min_m}),
-                           std::max({above[k].max_m, here[k].max_m, below[k].max_m}),
-                           above[k].known + here[k].known + below[k].known};
-      for (int y = 2 * row; y < std::min(2 * row + 2, jumps.rows); ++y) {
-        for (int x = 2 * c; x < std::min(2 * c + 2, jumps.cols); ++x) {
-          jumps(y, x) = jump_of(current.mat(y, x), around, config);
-        }
-      }
-    }
-  }
+  const JumpRow row_of_cells(cells, config);
+  for (int y = 0; y < jumps.rows; ++y)
+    row_of_cells.mark(current.mat[y], y / 2, jumps[y], jumps.cols);
   return jumps;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include <Eigen/Geometry>
@@ -64,8 +65,18 @@ class DepthWarper {
                                  const Eigen::Isometry3d& T_current_previous) const;
 
  private:
+  struct Row {
+    float *u, *v;  // cells, out
+    float* z;      // metres; in and out
+    std::size_t size;
+  };
+  void project_row(const Eigen::Matrix<float, 3, 4>& T,
+                   const float* ray_x,
+                   const float* ray_y,
+                   const Row& row) const;
+
   CameraModel camera_;
-  cv::Mat2f rays_;  // of the cells
+  cv::Mat1f ray_x_, ray_y_;  // of the cells, x / z and y / z
 };
 
 /// Where the current depth is nearer, or farther, than all of the warped depth within two pixels,

@@ -2,7 +2,6 @@
 #include "stillmap/dynamics/dynamic_objects.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 
 #include "stillmap/core/error.hpp"
@@ -26,19 +25,22 @@ StateReason reason_of(Contact contact) {
 }
 
 /// The mask with the dynamic objects alone.
-cv::Mat1b dynamic_pixels(const cv::Mat1b& ids,
+cv::Mat1b dynamic_pixels(const FrameObjects& objects,
+                         const MaskAreas& areas,
                          const std::vector<ObjectState>& states,
                          cv::Size image) {
-  if (ids.empty()) return {image, std::uint8_t{0}};
-  std::array<std::uint8_t, 256> kept{};
+  cv::Mat1b result(image, std::uint8_t{0});
   for (std::size_t i = 0; i < states.size(); ++i) {
-    if (states[i].dynamic) kept[i + 1] = static_cast<std::uint8_t>(i + 1);
-  }
-  cv::Mat1b result(ids.size());
-  for (int row = 0; row < ids.rows; ++row) {
-    const std::uint8_t* from = ids[row];
-    std::transform(
-        from, from + ids.cols, result[row], [&kept](std::uint8_t id) { return kept[id]; });
+    if (!states[i].dynamic) continue;
+    const auto id = static_cast<std::uint8_t>(i + 1);
+    const cv::Rect& area = areas[id].bounds;
+    for (int row = area.y; row < area.y + area.height; ++row) {
+      const std::uint8_t* ids = objects.mask.mat[row];
+      std::uint8_t* target = result[row];
+      for (int x = area.x; x < area.x + area.width; ++x) {
+        target[x] = static_cast<std::uint8_t>(target[x] | (ids[x] == id ? id : 0));
+      }
+    }
   }
   return result;
 }
@@ -99,7 +101,7 @@ DynamicsResult DynamicObjects::judge(const DepthImage& depth,
   }
   DynamicsResult result;
   result.states = judge_states(objects, depths, moving);
-  result.mask.raw = dynamic_pixels(objects.mask.mat, result.states, depth.mat.size());
+  result.mask.raw = dynamic_pixels(objects, areas, result.states, depth.mat.size());
   result.mask.extended = mode_ == DynamicsMode::kMask
                              ? result.mask.raw
                              : extended_mask(depth, objects, areas, depths, result.states);

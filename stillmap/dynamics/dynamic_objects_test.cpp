@@ -9,7 +9,6 @@
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 
-#include "stillmap/core/se3.hpp"
 #include "stillmap/dynamics/dynamics_test_support.hpp"
 #include "stillmap/dynamics/object_tracker.hpp"
 #include "stillmap/io/trajectory_io.hpp"
@@ -119,17 +118,6 @@ TEST(DynamicObjects, AnEmptyFrameHasNothing) {
 }
 
 // --- on truth -----------------------------------------------------------------------------------
-
-Eigen::Isometry3d pose_at(const Trajectory& trajectory, double stamp_s) {
-  const auto next = std::ranges::lower_bound(
-      trajectory, stamp_s, {}, [](const StampedPose& p) { return p.stamp.seconds; });
-  if (next == trajectory.begin()) return next->T_world_camera;
-  if (next == trajectory.end()) return trajectory.back().T_world_camera;
-  const StampedPose& before = *(next - 1);
-  const double share =
-      (stamp_s - before.stamp.seconds) / (next->stamp.seconds - before.stamp.seconds);
-  return interpolate(before.T_world_camera, next->T_world_camera, share);
-}
 
 struct Result {
   Coverage raw, extended, all;

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,6 +15,8 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
 
+#include "stillmap/core/se3.hpp"
+#include "stillmap/core/trajectory.hpp"
 #include "stillmap/detections/detections_io.hpp"
 #include "stillmap/dynamics/frame_objects.hpp"
 #include "stillmap/io/image_io.hpp"
@@ -38,6 +42,7 @@ class TruthSequence {
     cv::Mat1b ids;
     std::array<bool, 256> dynamic{};
     std::vector<std::pair<int, PixelBox>> boxes;  // of what is in the image, by id
+    std::map<int, double> speeds;                 // of the same, m/s
   };
 
   /// Null where the data is absent.
@@ -72,6 +77,7 @@ class TruthSequence {
       if (!object.contains("box")) continue;
       const nlohmann::json& b = object.at("box");
       frame.boxes.emplace_back(id, PixelBox{b[0], b[1], b[2], b[3]});
+      frame.speeds[id] = object.at("speed");
     }
     return frame;
   }
@@ -92,6 +98,18 @@ class TruthSequence {
   DetectionsFolder detections_;
   std::map<std::string, nlohmann::json> lines_;
 };
+
+/// The pose at a time, between those of a trajectory.
+[[nodiscard]] inline Eigen::Isometry3d pose_at(const Trajectory& trajectory, double stamp_s) {
+  const auto next = std::ranges::lower_bound(
+      trajectory, stamp_s, {}, [](const StampedPose& p) { return p.stamp.seconds; });
+  if (next == trajectory.begin()) return next->T_world_camera;
+  if (next == trajectory.end()) return trajectory.back().T_world_camera;
+  const StampedPose& before = *(next - 1);
+  const double share =
+      (stamp_s - before.stamp.seconds) / (next->stamp.seconds - before.stamp.seconds);
+  return interpolate(before.T_world_camera, next->T_world_camera, share);
+}
 
 /// How well some pixels cover what moves.
 struct Coverage {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "stillmap/core/error.hpp"
 #include "stillmap/dynamics/boxes.hpp"
@@ -12,6 +13,7 @@ namespace {
 
 constexpr double kForgetAfter_s = 2.0;
 constexpr double kLongestGap_s = 0.5;
+constexpr double kSurfacePoints = 300;
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
@@ -116,32 +118,73 @@ MotionStates::Track& MotionStates::track_of(TrackId id) {
   return *tracks_.insert(place, std::move(fresh));
 }
 
-std::optional<MotionStates::Position> MotionStates::position_of(
-    const FrameObjects& objects,
-    const DepthImage& depth,
-    const TrackedObject& object,
-    const ObjectState& state,
-    const Eigen::Isometry3d& T_world_camera) const {
-  if (!state.depths || objects.mask.mat.empty()) return std::nullopt;
-  const cv::Rect area = pixels_of(object.detection.box, depth.mat.size());
+std::optional<MotionStates::Position> MotionStates::position_of(const View& view,
+                                                                const TrackedObject& object,
+                                                                const ObjectState& state) const {
+  if (!state.depths || view.objects.mask.mat.empty()) return std::nullopt;
+  const cv::Rect area = pixels_of(object.detection.box, view.depth.mat.size());
   const std::optional<Eigen::Vector2d> pixel =
-      middle_pixel(objects.mask, object.detection.id, area, depth, *state.depths);
+      middle_pixel(view.objects.mask, object.detection.id, area, view.depth, *state.depths);
   if (!pixel) return std::nullopt;
   const auto z = static_cast<double>(state.median_depth_m);
   const Eigen::Vector3d p_camera = camera_.unproject(camera_.undistort(*pixel), z);
-  return Position{
-      objects.stamp.seconds, T_world_camera * p_camera, config_.depth_noise_per_m * z * z};
+  return Position{view.objects.stamp.seconds,
+                  view.T_world_camera * p_camera,
+                  config_.depth_noise_per_m * z * z,
+                  surface_of(view, object, state)};
 }
 
-void MotionStates::decide(Track& track, const RobustVelocity& found, bool cut_off) const {
-  const double speed = found.velocity.norm();
+std::vector<Eigen::Vector3d> MotionStates::surface_of(const View& view,
+                                                      const TrackedObject& object,
+                                                      const ObjectState& state) const {
+  const cv::Rect area = pixels_of(object.detection.box, view.depth.mat.size());
+  const int step = std::max(1, static_cast<int>(std::sqrt(area.area() / kSurfacePoints)));
+  std::vector<Eigen::Vector3d> points;
+  for (int row = area.y + step / 2; row < area.y + area.height; row += step) {
+    for (int x = area.x + step / 2; x < area.x + area.width; x += step) {
+      const float z = view.depth.mat(row, x);
+      if (view.objects.mask.mat(row, x) != object.detection.id || !state.depths->contains(z)) {
+        continue;
+      }
+      points.push_back(view.T_world_camera *
+                       camera_.unproject(camera_.undistort({x, row}), static_cast<double>(z)));
+    }
+  }
+  return points;
+}
+
+double MotionStates::vacated(const Position& old, const View& view, int id) const {
+  const Eigen::Isometry3d T_camera_world = view.T_world_camera.inverse();
+  int there = 0, gone = 0;
+  for (const Eigen::Vector3d& p_world : old.surface) {
+    const Eigen::Vector3d p = T_camera_world * p_world;
+    if (!(p.z() > 0.01)) continue;
+    const Eigen::Vector2d pixel = camera_.distort(camera_.project(p));
+    const int x = static_cast<int>(std::lround(pixel.x()));
+    const int row = static_cast<int>(std::lround(pixel.y()));
+    if (x < 0 || row < 0 || x >= camera_.width_px || row >= camera_.height_px) continue;
+    const float z = view.depth.mat(row, x);
+    if (!(z > 0)) continue;
+    const double change = static_cast<double>(z) - p.z();
+    const double noise = 3 * config_.depth_noise_per_m * p.z() * p.z();
+    const bool same = std::abs(change) <= config_.vacated_m + noise;
+    there += same ? 1 : 0;
+    // What is nearer hides it, unless it is the object itself that has come.
+    if (!same && (change > 0 || view.objects.mask.mat(row, x) == id)) ++gone;
+  }
+  return gone == 0 ? 0.0 : static_cast<double>(gone) / (gone + there);
+}
+
+void MotionStates::decide(Track& track, bool cut_off, double vacated_share) const {
+  const double speed = track.velocity.velocity.norm();
   const double factor = cut_off ? config_.border_factor : 1.0;
-  const double error = config_.certainty * found.error;
+  const double error = config_.certainty * track.velocity.error;
+  const bool left = vacated_share >= config_.vacated_share;
   track.known = true;
-  if (speed > factor * config_.moving_m_s + error) {
+  if (left && speed > factor * config_.moving_m_s + error) {
     track.moving = true;
     track.calm = 0;
-  } else if (speed > factor * config_.still_m_s + error) {
+  } else if (left && speed > factor * config_.still_m_s + error) {
     track.calm = 0;
   } else if (++track.calm >= config_.calm_frames) {
     track.moving = false;
@@ -158,17 +201,14 @@ RobustVelocity MotionStates::velocity_of(const Track& track) const {
   return robust_velocity(stamps, places, track.positions.back().noise_m);
 }
 
-void MotionStates::add_position(Track& track, const Position& position, bool cut_off) const {
+void MotionStates::add_position(Track& track, Position position) const {
   // After a long time out of sight nothing is known of the way here.
   const double last_s = track.positions.empty() ? position.stamp_s : track.positions.back().stamp_s;
   if (position.stamp_s - last_s > kLongestGap_s) track.positions.clear();
-  track.positions.push_back(position);
+  track.positions.push_back(std::move(position));
   while (track.positions.size() > static_cast<std::size_t>(config_.window_frames)) {
     track.positions.pop_front();
   }
-  if (track.positions.size() < static_cast<std::size_t>(config_.min_frames)) return;
-  track.velocity = velocity_of(track);
-  decide(track, track.velocity, cut_off);
 }
 
 ObjectMotion MotionStates::motion_of(const Track& track, const ObjectState& state) const {
@@ -194,18 +234,26 @@ std::vector<ObjectMotion> MotionStates::update(const FrameObjects& objects,
   STILLMAP_CHECK(states.size() == objects.objects.size());
   const double now = objects.stamp.seconds;
   std::erase_if(tracks_, [now](const Track& t) { return now - t.last_seen_s > kForgetAfter_s; });
+  const View view{objects, depth, T_world_camera};
+  const auto enough = static_cast<std::size_t>(config_.min_frames);
   std::vector<ObjectMotion> motions;
   for (std::size_t i = 0; i < states.size(); ++i) {
     const TrackedObject& object = objects.objects[i];
     Track& track = track_of(object.track);
     track.last_seen_s = now;
-    const std::optional<Position> position =
-        position_of(objects, depth, object, states[i], T_world_camera);
+    std::optional<Position> position = position_of(view, object, states[i]);
+    std::optional<Eigen::Vector3d> p_world;
+    if (position) p_world = position->p_world;
     if (position && !object.filled) {
-      add_position(track, *position, reaches_border(object.detection.box, depth.mat.size()));
+      add_position(track, *std::move(position));
+      if (track.positions.size() >= enough) {
+        track.velocity = velocity_of(track);
+        const bool cut_off = reaches_border(object.detection.box, depth.mat.size());
+        decide(track, cut_off, vacated(track.positions.front(), view, object.detection.id));
+      }
     }
     motions.push_back(motion_of(track, states[i]));
-    if (position) motions.back().p_world = position->p_world;
+    motions.back().p_world = p_world;
   }
   return motions;
 }

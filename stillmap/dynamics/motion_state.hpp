@@ -27,6 +27,8 @@ struct MotionStateConfig {
   double depth_noise_per_m = 0.0015;
   double border_factor = 2.0;
   int calm_frames = 5;
+  double vacated_share = 0.15;
+  double vacated_m = 0.05;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -54,6 +56,12 @@ struct MotionStateConfig {
     visit("calm_frames",
           self.calm_frames,
           FieldInfo{"frames that it takes to be still again", "frames", 1, 1000});
+    visit("vacated_share",
+          self.vacated_share,
+          FieldInfo{"what moves must have left this much of where it was", "", 0, 1});
+    visit("vacated_m",
+          self.vacated_m,
+          FieldInfo{"change of depth that shows it left, besides noise", "m", 0, 10});
   }
 };
 
@@ -90,7 +98,10 @@ struct RobustVelocity {
 /// An object's middle is the median column and row of its pixels at the median of their depths. Its
 /// velocity is the median slope over the last frames (Theil-Sen), with an error from the scatter
 /// about it, but no less than depth noise makes; so the farther an object, or the more its mask
-/// flickers, the faster it must be to count as moving. Boxes that were filled in are no evidence.
+/// flickers, the faster it must be to count as moving. And it must have left some of where it was:
+/// a part of its surface of some frames ago, where one now sees farther or an other part of it. So
+/// what is covered up, or cut off by the image, bit by bit does not seem to move. Boxes that were
+/// filled in are no evidence.
 class MotionStates {
  public:
   MotionStates(const MotionStateConfig& config, const CameraModel& camera);
@@ -110,6 +121,12 @@ class MotionStates {
     double stamp_s = 0;
     Eigen::Vector3d p_world;
     double noise_m = 0;
+    std::vector<Eigen::Vector3d> surface;  // some of what was seen of it, in the world
+  };
+  struct View {
+    const FrameObjects& objects;
+    const DepthImage& depth;
+    const Eigen::Isometry3d& T_world_camera;
   };
   struct Track {
     TrackId id;
@@ -121,15 +138,17 @@ class MotionStates {
   };
 
   [[nodiscard]] Track& track_of(TrackId id);
-  [[nodiscard]] std::optional<Position> position_of(const FrameObjects& objects,
-                                                    const DepthImage& depth,
+  [[nodiscard]] std::optional<Position> position_of(const View& view,
                                                     const TrackedObject& object,
-                                                    const ObjectState& state,
-                                                    const Eigen::Isometry3d& T_world_camera) const;
+                                                    const ObjectState& state) const;
+  [[nodiscard]] std::vector<Eigen::Vector3d> surface_of(const View& view,
+                                                        const TrackedObject& object,
+                                                        const ObjectState& state) const;
+  [[nodiscard]] double vacated(const Position& old, const View& view, int id) const;
   [[nodiscard]] RobustVelocity velocity_of(const Track& track) const;
   [[nodiscard]] ObjectMotion motion_of(const Track& track, const ObjectState& state) const;
-  void add_position(Track& track, const Position& position, bool cut_off) const;
-  void decide(Track& track, const RobustVelocity& found, bool cut_off) const;
+  void add_position(Track& track, Position position) const;
+  void decide(Track& track, bool cut_off, double vacated_share) const;
 
   MotionStateConfig config_;
   CameraModel camera_;

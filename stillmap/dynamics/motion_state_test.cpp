@@ -12,6 +12,7 @@
 #include "stillmap/core/se3.hpp"
 #include "stillmap/dynamics/dynamics_test_support.hpp"
 #include "stillmap/dynamics/object_tracker.hpp"
+#include "stillmap/io/trajectory_io.hpp"
 
 namespace stillmap {
 namespace {
@@ -171,6 +172,75 @@ TEST(MotionStates, WithoutDepthOrWhenFilledInNothingIsKnown) {
     Snapshot shot = look(i, {0.1 * i - 1, 0, 2.0}, camera_at(i));
     shot.objects.objects[0].filled = BoxOrigin{FrameId(1), std::nullopt};
     EXPECT_EQ(feed(states, shot).motion, Motion::kUnknown);
+  }
+}
+
+/// The truth's id that most pixels of an object have; 0 when that is none.
+int true_id(const FrameObjects& frame, int id, const cv::Mat1b& truth) {
+  std::array<int, 100> votes{};
+  for (int row = 0; row < truth.rows; ++row) {
+    for (int x = 0; x < truth.cols; ++x) {
+      if (frame.mask.mat(row, x) == id) ++votes[truth(row, x)];
+    }
+  }
+  return static_cast<int>(std::ranges::max_element(votes) - votes.begin());
+}
+
+struct MotionScore {
+  int fast_known = 0, fast_moving = 0;    // people faster than 0.4 m/s
+  int still_known = 0, still_moving = 0;  // what never moves
+};
+
+/// The motion states of all frames of a sequence, at true poses.
+MotionScore score_motion(const TruthSequence& data) {
+  const TumSequence& sequence = data.sequence();
+  const Trajectory poses = read_trajectory(*sequence.groundtruth_file());
+  const DynamicObjects dynamics({}, sequence.camera(), DynamicsMode::kMask);
+  MotionStates states({}, sequence.camera());
+  ObjectTracker tracker({}, FillRule::kCausal);
+  MotionScore score;
+  for (std::uint32_t i = 0; i < sequence.size(); ++i) {
+    const FramePtr frame = sequence.read(FrameId(i));
+    const std::optional<FrameObjects> objects =
+        tracker.push({frame->id, data.detections(i), frame->depth});
+    const DynamicsResult judged = dynamics.judge(frame->depth, *objects, std::nullopt);
+    const std::vector<ObjectMotion> motions =
+        states.update(*objects, frame->depth, judged.states, pose_at(poses, frame->stamp.seconds));
+    const TruthSequence::Frame truth = data.truth(i);
+    for (std::size_t k = 0; k < motions.size(); ++k) {
+      if (objects->objects[k].filled || motions[k].motion == Motion::kUnknown) continue;
+      const int id = true_id(*objects, static_cast<int>(k) + 1, truth.ids);
+      const double speed = id == 0 ? 0.0 : truth.speeds.at(id);
+      const int moving = motions[k].motion == Motion::kMoving ? 1 : 0;
+      if (id > 0 && id < 10 && speed > 0.4) {
+        ++score.fast_known;
+        score.fast_moving += moving;
+      } else if ((id == 0 || id >= 10) && speed < 0.02) {
+        ++score.still_known;
+        score.still_moving += moving;
+      }
+    }
+  }
+  return score;
+}
+
+TEST(MotionStates, TellPeopleWhoWalkFromWhatStandsOnTruth) {
+  for (const char* name : {"twin_walking_xyz", "fr1_xyz_walkers"}) {
+    const std::unique_ptr<TruthSequence> data = TruthSequence::open(name);
+    if (!data) GTEST_SKIP() << "the shared test data is absent (set STILLMAP_DATA)";
+    const MotionScore score = score_motion(*data);
+    const std::string what = fmt::format("{}: {} of {} who walk move, {} of {} that stand",
+                                         name,
+                                         score.fast_moving,
+                                         score.fast_known,
+                                         score.still_moving,
+                                         score.still_known);
+    SCOPED_TRACE(what);
+    fmt::print("{}\n", what);
+    ASSERT_GT(score.fast_known, 100);
+    ASSERT_GT(score.still_known, 100);
+    EXPECT_GT(score.fast_moving, 0.5 * score.fast_known);
+    EXPECT_LT(score.still_moving, 0.06 * score.still_known);
   }
 }
 
