@@ -152,7 +152,19 @@ class GrowthGrid {
     const std::uint8_t* ids1 = object_.mask.mat[y1];
     const int id = object_.id;
     cell.mask = ids[x] == id || ids[x1] == id || ids1[x] == id || ids1[x1] == id;
-    if (!cell.mask && ids[x] != 0) cell.depth = 0;  // somebody else's
+    if (cell.mask) return;
+    if (ids[x] != 0) cell.depth = 0;  // somebody else's
+    if (stands_still(cell.depth, y / 2, x / 2)) {
+      cell.depth = 0;
+      cell.rim = true;  // no hole
+    }
+  }
+
+  [[nodiscard]] bool stands_still(float depth, int row, int column) const {
+    if (rule_.known_static.empty()) return false;
+    const float known = rule_.known_static(row, column);
+    const float tolerance = rule_.static_m + rule_.static_per_m * known * known;
+    return known > 0 && std::abs(known - depth) < tolerance;
   }
 
   [[nodiscard]] int index(int row, int column) const { return (row + 1) * stride_ + column + 1; }

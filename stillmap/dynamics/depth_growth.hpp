@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <opencv2/core/types.hpp>
+#include <opencv2/core/mat.hpp>
 
 #include "stillmap/dynamics/object_depth.hpp"
 #include "stillmap/dynamics/object_view.hpp"
@@ -17,6 +17,9 @@ struct GrowthRule {
   int longest_way_px = 0;
   double min_mask_share = 0;
   bool drop_outliers = false;
+  cv::Mat1f known_static;  ///< depth at every second pixel of what must not join; may be empty
+  float static_m = 0;      ///< how near to it: static_m + static_per_m z^2
+  float static_per_m = 0;
 };
 
 /// The pixels in `area` that hang together in depth with an object's mask; see extend_mask().

@@ -106,20 +106,26 @@ DepthWarper::DepthWarper(const CameraModel& camera)
 }
 
 WarpedDepth DepthWarper::warp(const DepthImage& previous,
-                              const Eigen::Isometry3d& T_current_previous) const {
+                              const Eigen::Isometry3d& T_current_previous,
+                              const cv::Mat1b& without) const {
   STILLMAP_CHECK(previous.mat.rows == camera_.height_px && previous.mat.cols == camera_.width_px);
   const Eigen::Matrix<float, 3, 4> T = T_current_previous.matrix().topRows<3>().cast<float>();
   WarpedDepth warped{cv::Mat1f(ray_x_.size(), 0.0F)};
   const auto columns = static_cast<float>(ray_x_.cols), rows = static_cast<float>(ray_x_.rows);
   const auto width = static_cast<std::size_t>(ray_x_.cols);
-  std::vector<float> u(width), v(width), z(width);
+  std::vector<float> u(width), v(width), z(width), known(width);
   for (int row = 0; row < ray_x_.rows; ++row) {
     const float* depth = previous.mat[2 * row];
     for (std::size_t c = 0; c < width; ++c) z[c] = depth[2 * c];
+    if (!without.empty()) {
+      const std::uint8_t* left_out = without[2 * row];
+      for (std::size_t c = 0; c < width; ++c) z[c] = left_out[2 * c] != 0 ? 0.0F : z[c];
+    }
+    std::ranges::copy(z, known.begin());
     project_row(T, ray_x_[row], ray_y_[row], {u.data(), v.data(), z.data(), width});
     for (std::size_t c = 0; c < width; ++c) {
       const bool inside = u[c] >= 0 && v[c] >= 0 && u[c] < columns && v[c] < rows;
-      if (!inside || !(depth[2 * c] > 0) || !(z[c] > 0.01F)) continue;
+      if (!inside || !(known[c] > 0) || !(z[c] > 0.01F)) continue;
       float& cell = warped.mat(static_cast<int>(v[c]), static_cast<int>(u[c]));
       if (cell == 0 || z[c] < cell) cell = z[c];
     }

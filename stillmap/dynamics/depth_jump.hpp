@@ -21,8 +21,8 @@ enum DepthJump : std::uint8_t {
 };
 
 struct DepthJumpConfig {
-  double jump_m = 0.2;
-  double jump_per_m = 0.02;
+  double jump_m = 0.1;
+  double jump_per_m = 0.01;
   bool revealed = false;
   double paper_jump_m = 1.0;
 
@@ -60,9 +60,11 @@ class DepthWarper {
  public:
   explicit DepthWarper(const CameraModel& camera);
 
-  /// The nearest measured point of `previous` at each cell. `previous` has the camera's size.
+  /// The nearest measured point of `previous` at each cell, without the pixels that are not 0 in
+  /// `without`. `previous` has the camera's size, `without` the same or none.
   [[nodiscard]] WarpedDepth warp(const DepthImage& previous,
-                                 const Eigen::Isometry3d& T_current_previous) const;
+                                 const Eigen::Isometry3d& T_current_previous,
+                                 const cv::Mat1b& without = {}) const;
 
  private:
   struct Row {

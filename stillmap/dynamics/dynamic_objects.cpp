@@ -102,10 +102,18 @@ DynamicsResult DynamicObjects::judge(const DepthImage& depth,
   DynamicsResult result;
   result.states = judge_states(objects, depths, moving);
   result.mask.raw = dynamic_pixels(objects, areas, result.states, depth.mat.size());
-  result.mask.extended = mode_ == DynamicsMode::kMask
-                             ? result.mask.raw
-                             : extended_mask(depth, objects, areas, depths, result.states);
-  result.mask.jumps = jumps(depth, previous);
+  WarpedDepth expected;
+  cv::Mat1f known_static;
+  if (mode_ == DynamicsMode::kFull && previous) {
+    expected = warper_.warp(previous->depth, previous->T_current_previous, previous->dynamic);
+    // Without the dynamic pixels of then, what is as it was may just not have moved yet.
+    if (!previous->dynamic.empty()) known_static = expected.mat;
+  }
+  result.mask.extended =
+      mode_ == DynamicsMode::kMask
+          ? result.mask.raw
+          : extended_mask(depth, objects, areas, depths, result.states, known_static);
+  result.mask.jumps = jumps(depth, previous, expected);
   return result;
 }
 
@@ -158,7 +166,8 @@ cv::Mat1b DynamicObjects::extended_mask(const DepthImage& depth,
                                         const FrameObjects& objects,
                                         const MaskAreas& areas,
                                         const std::vector<ObjectDepths>& depths,
-                                        const std::vector<ObjectState>& states) const {
+                                        const std::vector<ObjectState>& states,
+                                        const cv::Mat1f& known_static) const {
   cv::Mat1b extended(depth.mat.size(), std::uint8_t{0});
   for (std::size_t i = 0; i < states.size(); ++i) {
     if (!states[i].dynamic) continue;
@@ -167,22 +176,21 @@ cv::Mat1b DynamicObjects::extended_mask(const DepthImage& depth,
     const MaskArea& area = areas[static_cast<std::size_t>(id)];
     const ObjectView view{depth, objects.mask, id, object.detection.box};
     // A box in place of a mask holds all that is known already.
-    const PixelPatch patch = object.mask_source == MaskSource::kBox
-                                 ? mask_patch(view, area)
-                                 : extend_mask(view, area, depths[i], config_.extension);
+    const PixelPatch patch =
+        object.mask_source == MaskSource::kBox
+            ? mask_patch(view, area)
+            : extend_mask(view, area, depths[i], config_.extension, known_static);
     paint(patch, static_cast<std::uint8_t>(id), extended);
   }
   return extended;
 }
 
 cv::Mat1b DynamicObjects::jumps(const DepthImage& depth,
-                                const std::optional<PreviousDepth>& previous) const {
+                                const std::optional<PreviousDepth>& previous,
+                                const WarpedDepth& expected) const {
   if (!previous || mode_ == DynamicsMode::kMask) return {depth.mat.size(), std::uint8_t{kNoJump}};
-  if (mode_ == DynamicsMode::kPaper) {
-    return depth_jumps(depth, previous->depth, config_.jump.paper_jump_m);
-  }
-  return depth_jumps(
-      depth, warper_.warp(previous->depth, previous->T_current_previous), config_.jump);
+  if (mode_ == DynamicsMode::kFull) return depth_jumps(depth, expected, config_.jump);
+  return depth_jumps(depth, previous->depth, config_.jump.paper_jump_m);
 }
 
 }  // namespace stillmap

@@ -24,7 +24,7 @@ namespace stillmap {
 enum class DynamicsMode : std::uint8_t {
   kMask,   ///< what the network's masks of dynamic classes cover
   kPaper,  ///< Fan 2020 to the letter: masks extended in their boxes, interaction, plain jumps
-  kFull,   ///< extension as configured, jumps against the warped depth, and what is known to move
+  kFull,   ///< extension as configured, jumps against warped static depth, what is seen to move
 };
 
 struct DynamicObjectsConfig {
@@ -82,10 +82,13 @@ struct DynamicsResult {
   std::vector<ObjectState> states;  ///< in the order of the frame's objects
 };
 
-/// The frame before, for what has jumped.
+/// An earlier frame, for what has changed since. kPaper compares with the frame right before, pixel
+/// by pixel. For kFull one from 10 to 20 frames before, with its dynamic pixels, is best: what
+/// moves has left its place by then, and what has not changed is known to stand still.
 struct PreviousDepth {
   DepthImage depth;
   Eigen::Isometry3d T_current_previous = Eigen::Isometry3d::Identity();
+  cv::Mat1b dynamic = {};  ///< not 0 where that frame was not static; may be empty
 };
 
 /// Judges the objects of a frame and finds the pixels of those that move: sections 2 and 3 of
@@ -114,9 +117,11 @@ class DynamicObjects {
                                         const FrameObjects& objects,
                                         const MaskAreas& areas,
                                         const std::vector<ObjectDepths>& depths,
-                                        const std::vector<ObjectState>& states) const;
+                                        const std::vector<ObjectState>& states,
+                                        const cv::Mat1f& known_static) const;
   [[nodiscard]] cv::Mat1b jumps(const DepthImage& depth,
-                                const std::optional<PreviousDepth>& previous) const;
+                                const std::optional<PreviousDepth>& previous,
+                                const WarpedDepth& expected) const;
 
   DynamicObjectsConfig config_;
   DynamicsMode mode_;

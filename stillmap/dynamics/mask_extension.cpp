@@ -66,7 +66,8 @@ PixelPatch mask_patch(const ObjectView& object, const MaskArea& area) {
 PixelPatch extend_mask(const ObjectView& object,
                        const MaskArea& area,
                        const ObjectDepths& depths,
-                       const MaskExtensionConfig& config) {
+                       const MaskExtensionConfig& config,
+                       const cv::Mat1f& known_static) {
   STILLMAP_CHECK(area.pixels == 0 || object.mask.mat.size() == object.depth.mat.size());
   if (config.variant == "paper") return paper_extension(object, area, depths, config);
   if (area.pixels == 0) return {};
@@ -80,6 +81,9 @@ PixelPatch extend_mask(const ObjectView& object,
   rule.longest_way_px = config.grow_px * object.depth.mat.cols / 640;
   rule.min_mask_share = config.min_mask_share;
   rule.drop_outliers = config.drop_outliers;
+  rule.known_static = known_static;
+  rule.static_m = static_cast<float>(config.static_m);
+  rule.static_per_m = static_cast<float>(config.static_per_m);
   return grow_in_depth(object, growth_area(object, area, config.box_margin), rule);
 }
 

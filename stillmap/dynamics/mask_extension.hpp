@@ -19,9 +19,11 @@ struct MaskExtensionConfig {
   double step_m = 0.01;
   double step_per_m = 0.003;
   int grow_px = 40;
-  double min_mask_share = 0.5;
-  bool drop_outliers = true;
+  double min_mask_share = 0.4;
+  bool drop_outliers = false;
   double large_part = 0.05;
+  double static_m = 0.02;
+  double static_per_m = 0.005;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -63,6 +65,13 @@ struct MaskExtensionConfig {
           self.large_part,
           FieldInfo{
               "connected: a larger part of the mask belongs to the object at any depth", "", 0, 1});
+    visit("static_m",
+          self.static_m,
+          FieldInfo{
+              "connected: this close to what is known to stand still does not join", "m", 0, 1});
+    visit("static_per_m",
+          self.static_per_m,
+          FieldInfo{"connected: growth of that distance with depth squared", "1/m", 0, 1});
     visit("drop_outliers",
           self.drop_outliers,
           FieldInfo{"connected: mask pixels apart from the object in depth leave it"});
@@ -81,12 +90,16 @@ struct MaskExtensionConfig {
 /// are mostly something else keep their mask alone. Holes without depth inside are filled. Depth is
 /// looked at in every second row and column. A mask without any depth is kept as it is.
 ///
+/// `known_static`, if not empty, has the depth of what is known to stand still, for every second
+/// pixel of every second row, 0 where nothing is: pixels of that depth do not join (`connected`).
+///
 /// `area` is that of the object's id in `object.mask`, of which `object.depth` has the size.
 /// The patch may be empty.
 [[nodiscard]] PixelPatch extend_mask(const ObjectView& object,
                                      const MaskArea& area,
                                      const ObjectDepths& depths,
-                                     const MaskExtensionConfig& config);
+                                     const MaskExtensionConfig& config,
+                                     const cv::Mat1f& known_static = {});
 
 /// The mask of an object as it is.
 [[nodiscard]] PixelPatch mask_patch(const ObjectView& object, const MaskArea& area);

@@ -35,10 +35,11 @@ struct Scene {
     mask.mat(trunk).setTo(kId);
   }
 
-  [[nodiscard]] PixelPatch extended(const MaskExtensionConfig& config) const {
+  [[nodiscard]] PixelPatch extended(const MaskExtensionConfig& config,
+                                    const cv::Mat1f& known_static = {}) const {
     const MaskArea area = mask_areas(mask)[kId];
     const ObjectDepths depths = object_depths(depth, mask, kId, area, outlier_rule(config));
-    return extend_mask({depth, mask, kId, kBox}, area, depths, config);
+    return extend_mask({depth, mask, kId, kBox}, area, depths, config, known_static);
   }
 };
 
@@ -162,14 +163,32 @@ TEST(ConnectedExtension, WhatIsSomebodyElsesDoesNotJoin) {
   EXPECT_EQ(pixels_in(scene.extended({}), scene.arm), 0);
 }
 
-TEST(ConnectedExtension, ALeakOntoTheWallLeavesTheMask) {
+TEST(ConnectedExtension, WhatIsKnownToStandStillDoesNotJoin) {
+  // A shelf touches the trunk at its depth, where it was before somebody came.
+  const Scene scene;
+  cv::Mat1f known(60, 80, 0.0F);
+  for (int row = 0; row < known.rows; ++row) {
+    for (int c = 0; c < known.cols; ++c) {
+      if (scene.arm.contains({2 * c, 2 * row})) known(row, c) = scene.depth.mat(2 * row, 2 * c);
+    }
+  }
+  MaskExtensionConfig config;
+  config.grow_px = 80;
+  EXPECT_EQ(pixels_in(scene.extended(config), scene.arm), scene.arm.area());
+  EXPECT_EQ(pixels_in(scene.extended(config, known), scene.arm), 0);
+  known += 0.1F;  // something else was there
+  EXPECT_EQ(pixels_in(scene.extended(config, known), scene.arm), scene.arm.area());
+}
+
+TEST(ConnectedExtension, ALeakOntoTheWallLeavesTheMaskWhenAsked) {
   Scene scene;
   const cv::Rect leak(44, 30, 6, 8);  // 2 % of the mask, at the wall's depth
   scene.mask.mat(leak).setTo(kId);
-  EXPECT_EQ(pixels_in(scene.extended({}), leak), 0);
-  MaskExtensionConfig keep;
-  keep.drop_outliers = false;
-  EXPECT_EQ(pixels_in(scene.extended(keep), leak), leak.area());
+  MaskExtensionConfig config;
+  config.drop_outliers = true;
+  EXPECT_EQ(pixels_in(scene.extended(config), leak), 0);
+  config.drop_outliers = false;
+  EXPECT_EQ(pixels_in(scene.extended(config), leak), leak.area());
 }
 
 TEST(ConnectedExtension, ALargePartAtAnotherDepthStays) {
