@@ -24,9 +24,8 @@ class GrowthGrid {
         rows_((area.y + area.height - y0_ + 1) / 2),
         stride_(columns_ + 2),
         cells_(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(rows_ + 2)) {
-    for (int row = 0; row < rows_; ++row) {
-      for (int column = 0; column < columns_; ++column) fill_cell(row, column);
-    }
+    order_.reserve(cells_.size());
+    for (int row = 0; row < rows_; ++row) fill_row(row);
   }
 
   /// Numbers the parts of the mask that hang together, and finds those that are the object's.
@@ -85,7 +84,7 @@ class GrowthGrid {
     for (int row = 0; row < rows_; ++row) {
       for (int column = 0; column < columns_; ++column) {
         const int first = index(row, column);
-        if (at(first).depth > 0 || at(first).visited) continue;
+        if (at(first).depth > 0 || at(first).rim || at(first).visited) continue;
         const double share = collect_hole(first, hole);
         if (share < kHoleRim) continue;
         for (const int i : hole) at(i).part = kHole;
@@ -108,7 +107,8 @@ class GrowthGrid {
   struct Cell {
     float depth = 0;
     std::uint32_t part = 0;  // that has it, from 1
-    bool mask = false, visited = false, rim = true;
+    bool mask = false, visited = false;
+    bool rim = true;  // of the image or of what may not join: neither joins nor is a hole
   };
   struct Part {
     std::size_t seeds = 0;          // cells of the mask
@@ -137,32 +137,36 @@ class GrowthGrid {
   static constexpr std::uint32_t kHole = 0xFFFFFFFF;
   static constexpr double kHoleRim = 0.6;
 
-  void fill_cell(int row, int column) {
-    const int y = y0_ + 2 * row, x = x0_ + 2 * column;
+  void fill_row(int row) {
+    const int y = y0_ + 2 * row;
     const int y1 = std::min(y + 1, object_.depth.mat.rows - 1);
-    const int x1 = std::min(x + 1, object_.depth.mat.cols - 1);
-    const float* upper = object_.depth.mat[y];
-    const float* lower = object_.depth.mat[y1];
-    Cell& cell = at(index(row, column));
-    cell.rim = false;
-    for (const float z : {upper[x], lower[x1], upper[x1], lower[x]}) {
-      if (cell.depth <= 0 && z > 0) cell.depth = z;
-    }
-    const std::uint8_t* ids = object_.mask.mat[y];
-    const std::uint8_t* ids1 = object_.mask.mat[y1];
+    const int last = object_.depth.mat.cols - 1;
+    const float *upper = object_.depth.mat[y], *lower = object_.depth.mat[y1];
+    const std::uint8_t *ids = object_.mask.mat[y], *ids1 = object_.mask.mat[y1];
+    const float* known = rule_.known_static.empty() ? nullptr : rule_.known_static[y / 2];
     const int id = object_.id;
-    cell.mask = ids[x] == id || ids[x1] == id || ids1[x] == id || ids1[x1] == id;
-    if (cell.mask) return;
-    if (ids[x] != 0) cell.depth = 0;  // somebody else's
-    if (stands_still(cell.depth, y / 2, x / 2)) {
-      cell.depth = 0;
-      cell.rim = true;  // no hole
+    for (int column = 0; column < columns_; ++column) {
+      const int x = x0_ + 2 * column, x1 = std::min(x + 1, last);
+      Cell& cell = at(index(row, column));
+      cell.rim = false;
+      cell.depth = first_known(upper[x], lower[x1], upper[x1], lower[x]);
+      cell.mask = ids[x] == id || ids[x1] == id || ids1[x] == id || ids1[x1] == id;
+      if (cell.mask) continue;
+      const bool still = known != nullptr && stands_still(cell.depth, known[x / 2]);
+      if (ids[x] != 0 || still) {  // somebody else's, or nobody's
+        cell.depth = 0;
+        cell.rim = true;
+      }
     }
   }
 
-  [[nodiscard]] bool stands_still(float depth, int row, int column) const {
-    if (rule_.known_static.empty()) return false;
-    const float known = rule_.known_static(row, column);
+  [[nodiscard]] static float first_known(float a, float b, float c, float d) {
+    if (a > 0) return a;
+    if (b > 0) return b;
+    return c > 0 ? c : std::max(d, 0.0F);
+  }
+
+  [[nodiscard]] bool stands_still(float depth, float known) const {
     const float tolerance = rule_.static_m + rule_.static_per_m * known * known;
     return known > 0 && std::abs(known - depth) < tolerance;
   }

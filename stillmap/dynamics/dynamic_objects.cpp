@@ -50,7 +50,8 @@ void paint(const PixelPatch& patch, std::uint8_t number, cv::Mat1b& image) {
     const std::uint8_t* pixel = patch.pixels[v];
     std::uint8_t* target = image[patch.area.y + v] + patch.area.x;
     for (int u = 0; u < patch.area.width; ++u) {
-      if (pixel[u] != 0 && target[u] == 0) target[u] = number;
+      const bool free = (target[u] == 0) & (pixel[u] != 0);
+      target[u] = static_cast<std::uint8_t>(target[u] | (free ? number : 0));
     }
   }
 }
@@ -96,6 +97,7 @@ DynamicsResult DynamicObjects::judge(const DepthImage& depth,
   std::vector<ObjectDepths> depths;
   for (const TrackedObject& object : objects.objects) {
     const int id = object.detection.id;
+    STILLMAP_CHECK(id == static_cast<int>(depths.size()) + 1 && id <= 255);
     depths.push_back(
         object_depths(depth, objects.mask, id, areas[static_cast<std::size_t>(id)], rule));
   }

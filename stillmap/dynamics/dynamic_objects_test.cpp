@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <memory>
 
 #include <fmt/format.h>
@@ -115,6 +116,23 @@ TEST(DynamicObjects, AnEmptyFrameHasNothing) {
           .judge(depth, {}, PreviousDepth{depth, Eigen::Isometry3d::Identity()});
   EXPECT_TRUE(result.states.empty());
   EXPECT_EQ(cv::countNonZero(result.mask.extended | result.mask.jumps | result.mask.raw), 0);
+}
+
+TEST(DynamicObjects, GarbageInTheDepthHarmsNothing) {
+  Office office;
+  cv::RNG rng(3);
+  const std::vector<float> garbage{std::nanf(""), -1.0F, INFINITY, -INFINITY, 1e30F, 1e-30F, 0.0F};
+  for (float& z : office.depth.mat) {
+    if (rng.uniform(0, 3) == 0) z = garbage[static_cast<std::size_t>(rng.uniform(0, 7))];
+  }
+  const PreviousDepth before{office.depth, Eigen::Isometry3d::Identity()};
+  for (const DynamicsMode mode : {DynamicsMode::kPaper, DynamicsMode::kFull}) {
+    const DynamicsResult result = DynamicObjects({}, builtin_camera("tum_fr3"), mode)
+                                      .judge(office.depth, office.objects, before);
+    EXPECT_EQ(result.states[0].reason, StateReason::kDynamicClass);
+    EXPECT_GE(cv::countNonZero(result.mask.extended == 1), 100 * 350);
+    EXPECT_EQ(cv::countNonZero(result.mask.jumps & ~(office.depth.mat > 0)), 0);
+  }
 }
 
 // --- on truth -----------------------------------------------------------------------------------

@@ -28,7 +28,7 @@ PixelPatch paper_extension(const ObjectView& object,
   const bool whole_box = pixels_at_reference < config.whole_box_px;
   PixelPatch patch{box | area.bounds, {}};  // a mask may reach out of its box
   patch.pixels = cv::Mat1b(patch.area.size(), std::uint8_t{0});
-  if (whole_box) patch.pixels(box - patch.area.tl()).setTo(1);
+  if (whole_box && !box.empty()) patch.pixels(box - patch.area.tl()).setTo(1);
   const DepthInterval within = depths.interval.value_or(DepthInterval{0.0F, 0.0F});
   for (int v = 0; v < patch.area.height; ++v) {
     const int row = patch.area.y + v;

@@ -211,6 +211,13 @@ TEST(ConnectedExtension, AHoleWithoutDepthInsideIsFilled) {
   EXPECT_EQ(pixels_in(patch, beside), 0);
 }
 
+TEST(ConnectedExtension, SomethingInsideThatIsAnothersIsNoHole) {
+  Scene scene;
+  const cv::Rect phone(58, 44, 10, 12);
+  scene.mask.mat(phone).setTo(kId + 1);
+  EXPECT_EQ(pixels_in(scene.extended({}), phone), 0);
+}
+
 TEST(ConnectedExtension, ASmallMaskOnALargeSurfaceDoesNotGrow) {
   // A false person on the wall: what grows from it would mostly be wall.
   Scene scene;
@@ -229,6 +236,24 @@ TEST(ConnectedExtension, WithoutDepthTheMaskIsKept) {
   scene.depth.mat.setTo(0.0F);
   const PixelPatch patch = scene.extended({});
   EXPECT_EQ(pixels_in(patch, cv::Rect({0, 0}, kImage)), scene.trunk.area());
+}
+
+TEST(MaskExtension, ABoxOutsideTheImageHarmsNothing) {
+  const Scene scene;
+  const PixelBox outside{500, 500, 600, 600};
+  for (const char* variant : {"paper", "connected"}) {
+    MaskExtensionConfig config;
+    config.variant = variant;
+    for (const int id : {kId, kId + 1}) {  // with pixels elsewhere, and without any
+      const MaskArea area = mask_areas(scene.mask)[static_cast<std::size_t>(id)];
+      const ObjectDepths depths =
+          object_depths(scene.depth, scene.mask, id, area, outlier_rule(config));
+      const PixelPatch patch =
+          extend_mask({scene.depth, scene.mask, id, outside}, area, depths, config);
+      EXPECT_EQ(patch.area & cv::Rect({0, 0}, kImage), patch.area);
+      EXPECT_GE(pixels_in(patch, patch.area), static_cast<int>(area.pixels));
+    }
+  }
 }
 
 TEST(ConnectedExtension, OfNoMaskIsNothing) {

@@ -123,6 +123,8 @@ std::vector<TrackId> ObjectTracker::associate(const ObservedFrame& frame) {
 std::optional<FrameObjects> ObjectTracker::push(ObservedFrame frame) {
   STILLMAP_CHECK(held_.empty() ||
                  held_.back().frame.detections.stamp.seconds < frame.detections.stamp.seconds);
+  STILLMAP_CHECK(frame.detections.mask.mat.empty() ||
+                 frame.detections.mask.mat.size() == frame.depth.mat.size());
   const auto search = static_cast<std::size_t>(config_.search_frames);
   // A gap may be as long as the search both ways.
   std::erase_if(tracks_, [&](const Track& t) { return pushed_ - t.seen_at > 2 * search; });
