@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "stillmap/core/fields.hpp"
+
+namespace stillmap {
+
+/// What a class of objects is to a map of what stands still (Fan 2020, section III).
+enum class Category : std::uint8_t {
+  kStatic,              ///< stays where it is
+  kPotentiallyDynamic,  ///< moves when somebody moves it
+  kDynamic,             ///< moves by itself
+};
+
+/// The classes of two categories, names of COCO (or VOC's for the same) separated by commas; every
+/// other class is static.
+struct CategoryConfig {
+  std::string dynamic = "person, bird, cat, dog, horse, sheep, cow, elephant, bear, zebra, giraffe";
+  std::string potentially_dynamic =
+      "chair, couch, bench, book, keyboard, mouse, laptop, remote, cell phone, bottle, wine glass, "
+      "cup, bowl, fork, knife, spoon, backpack, handbag, suitcase, umbrella, tie, frisbee, "
+      "sports ball, kite, baseball bat, baseball glove, skateboard, tennis racket, snowboard, "
+      "skis, surfboard, banana, apple, sandwich, orange, pizza, potted plant, vase, scissors, "
+      "teddy bear, hair drier, toothbrush, clock, bicycle, motorcycle, car, bus, truck, train, "
+      "boat, airplane";
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit(
+        "dynamic", self.dynamic, FieldInfo{"classes that move by themselves, separated by commas"});
+    visit("potentially_dynamic",
+          self.potentially_dynamic,
+          FieldInfo{"classes that people move, separated by commas; the rest is static"});
+  }
+};
+
+/// Which class is in which category. Names that VOC spells otherwise are the same as COCO's.
+class CategoryTable {
+ public:
+  /// Throws Error, with the key and the name, for a name that COCO does not have, an empty one and
+  /// one that stands twice.
+  explicit CategoryTable(const CategoryConfig& config);
+
+  /// Static for any class that is in no list.
+  [[nodiscard]] Category of(std::string_view class_name) const;
+
+ private:
+  void add(std::string_view key, const std::string& list, Category category);
+
+  struct Entry {
+    std::string name;
+    Category category = Category::kStatic;
+  };
+  std::vector<Entry> entries_;  // by name
+};
+
+[[nodiscard]] std::string_view category_name(Category category);
+
+}  // namespace stillmap
