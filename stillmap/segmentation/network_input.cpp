@@ -126,7 +126,8 @@ Tensor make_input(const ColorImage& image,
     }
     for (std::size_t i = 0; i < row_values.size(); i += 3, ++pixel) {
       for (std::size_t c = 0; c < 3; ++c) {
-        const float value = (row_values[i + c] / 255.0F - format.mean[c]) / format.deviation[c];
+        const float stored = row_values[i + (format.blue_first ? 2 - c : c)];
+        const float value = (stored / 255.0F - format.mean[c]) / format.deviation[c];
         input.values[format.channels_last ? pixel * 3 + c : c * area + pixel] = value;
       }
     }

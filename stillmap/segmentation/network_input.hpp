@@ -35,13 +35,13 @@ struct InputPlacement {
 /// What a network wants to be given: (value / 255 - mean) / deviation for each channel.
 struct InputFormat {
   bool channels_last = false;
+  bool blue_first = false;  ///< channels in the order blue, green, red, also those of the next two
   std::array<float, 3> mean{0, 0, 0};
   std::array<float, 3> deviation{1, 1, 1};
   float padding = 0;  ///< what surrounds the image, from 0 to 255
 };
 
-/// The image as a network's input of one batch, 1x3xHxW or 1xHxWx3 in the order red, green, blue,
-/// sampled bilinearly.
+/// The image as a network's input of one batch, 1x3xHxW or 1xHxWx3, sampled bilinearly.
 [[nodiscard]] Tensor make_input(const ColorImage& image,
                                 const InputPlacement& placement,
                                 const InputFormat& format);

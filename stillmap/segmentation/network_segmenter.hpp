@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "stillmap/segmentation/export_kind.hpp"
@@ -49,7 +50,7 @@ class NetworkSegmenter : public Segmenter {
 };
 
 /// A detector's boxes; those of people get a mask from a network that separates a person from what
-/// is around.
+/// is around. A person of which that network sees next to nothing is dropped.
 class PersonSegmenter : public Segmenter {
  public:
   /// `matting` takes a square crop and gives one value a pixel, a person's from `threshold` up.
@@ -61,7 +62,8 @@ class PersonSegmenter : public Segmenter {
   [[nodiscard]] FrameDetections segment(const ColorImage& color, const Stamp& stamp) const override;
 
  private:
-  [[nodiscard]] FoundObject with_mask(FoundObject person, const ColorImage& color) const;
+  [[nodiscard]] std::optional<FoundObject> with_mask(FoundObject person,
+                                                     const ColorImage& color) const;
 
   cv::Size image_;
   ImageNetwork detector_;
