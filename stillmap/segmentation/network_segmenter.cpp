@@ -26,7 +26,7 @@ constexpr float kNanoDetScore = 0.35F;
 constexpr float kCenterNetScore = 0.28F;
 
 // A person that is missed does more harm than one too many; and what is none gets no mask.
-constexpr float kNanoDetPersonScore = 0.25F;
+constexpr float kNanoDetPersonScore = 0.2F;
 
 // Of the crop to a person's box, of the box to what of a person can stick out of it, and the share
 // of that which a person's mask covers at least. Chosen on photographs and rendered offices.
@@ -61,6 +61,9 @@ InputFormat format_of(ExportKind kind, bool last) {
       format.padding = 114;
       break;
     case ExportKind::kNanoDet:
+      format.blue_first = true;
+      format.mean = {0.406F, 0.456F, 0.485F};
+      format.deviation = {0.225F, 0.224F, 0.229F};
       break;
   }
   return format;

@@ -41,7 +41,7 @@ std::unique_ptr<Network> open_fetched(const fs::path& name, const SegmenterOptio
 }
 
 std::unique_ptr<Segmenter> make_person_segmenter(cv::Size image, const SegmenterOptions& options) {
-  constexpr float kPerson = 0.4F;
+  constexpr float kPerson = 0.3F;
   return std::make_unique<PersonSegmenter>(
       open_fetched("nanodet.onnx", options), open_fetched("selfie.onnx", options), kPerson, image);
 }
