@@ -42,8 +42,9 @@ std::unique_ptr<Network> open_fetched(const fs::path& name, const SegmenterOptio
 
 std::unique_ptr<Segmenter> make_person_segmenter(cv::Size image, const SegmenterOptions& options) {
   constexpr float kPerson = 0.3F;
-  return std::make_unique<PersonSegmenter>(
-      open_fetched("nanodet.onnx", options), open_fetched("selfie.onnx", options), kPerson, image);
+  std::unique_ptr<Network> detector = open_fetched("nanodet.onnx", options);
+  std::unique_ptr<Network> matting = open_fetched("selfie.onnx", options);
+  return std::make_unique<PersonSegmenter>(std::move(detector), std::move(matting), kPerson, image);
 }
 
 std::unique_ptr<Segmenter> make_network_segmenter(const fs::path& file,
