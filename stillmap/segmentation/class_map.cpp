@@ -39,7 +39,7 @@ ClassPlanes split_planes(const TensorView& output, bool channels_last) {
   TensorShape shape = without_batch(output.shape, are_labels ? 2 : 3);
   if (are_labels) shape.insert(shape.begin(), 1);
   if (shape.size() == 3 && channels_last && !are_labels) {
-    std::ranges::rotate(shape, shape.begin() + 2);
+    std::rotate(shape.begin(), shape.begin() + 2, shape.end());
   }
   const bool known = shape.size() == 3 && element_count(shape) > 0 && shape[0] <= kMostClasses &&
                      output.values.size() == static_cast<std::size_t>(element_count(shape));
