@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # From a fresh clone on Debian 12: `make demo` or `make test`, in either order. The work is CMake's;
 # this only installs what is missing and names the usual steps.
-.PHONY: setup build test demo bench format tidy clean
+.PHONY: setup models build test demo bench format tidy clean
 .DEFAULT_GOAL := build
 
 program := build/release/bin/stillmap
@@ -14,6 +14,12 @@ setup: $(setup_stamp)
 $(setup_stamp):
 	@tools/setup
 	@mkdir -p build && rm -f build/.setup-* && touch $@
+
+# ONNX Runtime and the networks of `--segmenter auto`; 300 MB once. With the headers that come along,
+# what is built from here on can run networks.
+models: setup
+	@tools/fetch_models
+	@test ! -f build/release/build.ninja || cmake --preset release >/dev/null
 
 build: setup
 	@test -f build/release/build.ninja || cmake --preset release

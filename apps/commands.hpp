@@ -18,6 +18,7 @@ struct CommandResult {
 //
 // A new command: apps/commands/NAME.cpp, its line here, in main.cpp's table and in CMakeLists.txt.
 void add_synth_command(CLI::App& app, CommandResult& result);
+void add_segment_command(CLI::App& app, CommandResult& result);
 void add_run_command(CLI::App& app, CommandResult& result);
 void add_evaluate_command(CLI::App& app, CommandResult& result);
 void add_config_command(CLI::App& app, CommandResult& result);

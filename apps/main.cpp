@@ -47,8 +47,11 @@ std::string version_text() {
 using AddCommand = void (*)(CLI::App&, CommandResult&);
 
 // In the order of --help.
-const std::vector<AddCommand> kCommands = {
-    add_run_command, add_synth_command, add_evaluate_command, add_config_command};
+const std::vector<AddCommand> kCommands = {add_run_command,
+                                           add_segment_command,
+                                           add_synth_command,
+                                           add_evaluate_command,
+                                           add_config_command};
 
 int run(const std::vector<std::string>& arguments) {
   CommandResult result;

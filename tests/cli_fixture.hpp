@@ -29,10 +29,12 @@ class Cli : public testing::Test {
   }
   ~Cli() override { std::filesystem::remove_all(folder_); }
 
-  // Runs "stillmap ARGUMENTS" in a shell, in the test's own folder.
-  [[nodiscard]] Outcome run(const std::string& arguments) const {
-    const std::string command =
-        "cd '" + folder_.string() + "' && '" STILLMAP_BINARY_DIR "/bin/stillmap' " + arguments;
+  // Runs "stillmap ARGUMENTS" in a shell, in the test's own folder; `environment` is of the form
+  // NAME=VALUE.
+  [[nodiscard]] Outcome run(const std::string& arguments,
+                            const std::string& environment = "") const {
+    const std::string command = "cd '" + folder_.string() + "' && " + environment +
+                                " '" STILLMAP_BINARY_DIR "/bin/stillmap' " + arguments;
     const int status = std::system(
         ("{ " + command + "; } > " + path("stdout.txt") + " 2> " + path("stderr.txt")).c_str());
     return {

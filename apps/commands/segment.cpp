@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "apps/commands.hpp"
+#include "apps/progress_bar.hpp"
+#include "stillmap/core/error.hpp"
+#include "stillmap/core/ordered_parallel.hpp"
+#include "stillmap/detections/detections_io.hpp"
+#include "stillmap/io/image_io.hpp"
+#include "stillmap/io/tum_lists.hpp"
+#include "stillmap/segmentation/segmenter.hpp"
+
+namespace stillmap {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct SegmentArguments {
+  std::string sequence;
+  std::string out;
+  std::string segmenter;
+  std::size_t threads = 2;
+};
+
+// What was found in a frame, or why its image could not be read.
+struct SegmentedFrame {
+  FrameDetections detections;
+  std::optional<std::string> damage;
+};
+
+bool is_in(const fs::path& path, const fs::path& folder) {
+  const auto [rest, unused] = std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
+  return rest == folder.end();
+}
+
+// The place that a path means, whether anything is there or not.
+fs::path place_of(const fs::path& path) {
+  std::error_code failure;
+  fs::path place = fs::weakly_canonical(path, failure);
+  if (failure) place = fs::absolute(path).lexically_normal();
+  return place.has_filename() ? place : place.parent_path();
+}
+
+// The results have the names that masks and detections of the input may have too.
+void check_out(const SegmentArguments& arguments) {
+  const fs::path out = place_of(arguments.out), sequence = place_of(arguments.sequence);
+  bool overwrites = out == sequence;
+  for (const char* folder : {"rgb", "depth", "truth"}) {
+    overwrites = overwrites || is_in(out, place_of(sequence / folder));
+  }
+  constexpr std::string_view kFolder = "detections:";
+  if (arguments.segmenter.starts_with(kFolder)) {
+    overwrites = overwrites || out == place_of(arguments.segmenter.substr(kFolder.size()));
+  }
+  if (!overwrites) return;
+  throw Error(
+      "--out {}: this is the input, which would be overwritten; name another folder such as {}",
+      arguments.out,
+      (fs::path(arguments.sequence) / "detections").string());
+}
+
+// That of the first image that can be read.
+cv::Size image_size(const std::vector<SequenceEntry>& entries) {
+  for (const SequenceEntry& entry : entries) {
+    try {
+      return read_color(entry.color_file).mat.size();
+    } catch (const DamagedImage&) {
+      if (&entry == &entries.back()) throw;
+    }
+  }
+  throw Error("a sequence without images");
+}
+
+SegmentedFrame segment_frame(const Segmenter& segmenter,
+                             const SequenceEntry& entry,
+                             cv::Size size) {
+  SegmentedFrame frame;
+  try {
+    const ColorImage color = read_color(entry.color_file);
+    if (color.mat.size() != size) {
+      throw Error("{}: {}x{} pixels, expected {}x{} as the images before",
+                  entry.color_file.string(),
+                  color.mat.cols,
+                  color.mat.rows,
+                  size.width,
+                  size.height);
+    }
+    frame.detections = segmenter.segment(color, entry.stamp);
+  } catch (const DamagedImage& damage) {
+    frame.damage = damage.what();
+  }
+  frame.detections.stamp = entry.stamp;
+  return frame;
+}
+
+void segment(const SegmentArguments& arguments) {
+  check_out(arguments);
+  const std::vector<SequenceEntry> entries = read_sequence_entries(arguments.sequence);
+  const cv::Size size = image_size(entries);
+  // The frames are worked on side by side, each by one thread.
+  const std::unique_ptr<Segmenter> segmenter =
+      make_segmenter(arguments.segmenter, size, {.threads = 1});
+  DetectionsWriter writer(arguments.out, size);
+
+  std::size_t objects = 0;
+  ProgressBar progress("frames");
+  const auto start = std::chrono::steady_clock::now();
+  produce_in_parallel(
+      entries.size(),
+      arguments.threads,
+      [&](std::size_t i) { return segment_frame(*segmenter, entries[i], size); },
+      [&](std::size_t i, const SegmentedFrame& frame) {
+        if (frame.damage) progress.warn(*frame.damage + "; taken for a frame without objects");
+        writer.add(frame.detections);
+        objects += frame.detections.objects.size();
+        progress.show(i + 1, entries.size());
+      });
+  writer.finish();
+  progress.finish();
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  print_output(fmt::format(
+      "detections  {} objects in {} frames, in {}\ntime        {:.1f} s, {:.1f} frames a second\n",
+      objects,
+      entries.size(),
+      arguments.out,
+      took.count(),
+      static_cast<double>(entries.size()) / took.count()));
+}
+
+}  // namespace
+
+void add_segment_command(CLI::App& app, CommandResult&) {
+  CLI::App* command =
+      app.add_subcommand("segment", "Find people and things in every image of a sequence");
+  const auto arguments = std::make_shared<SegmentArguments>();
+  command->add_option("SEQUENCE", arguments->sequence, "folder in the TUM RGB-D layout")
+      ->required();
+  command
+      ->add_option("--out",
+                   arguments->out,
+                   "folder for detections.jsonl and masks/; for `run` "
+                   "--segmenter detections:FOLDER")
+      ->required();
+  command
+      ->add_option("--segmenter",
+                   arguments->segmenter,
+                   "auto (the networks that tools/fetch_models gets), onnx:MODEL.onnx or "
+                   "detections:DIR")
+      ->required();
+  command->add_option("--threads", arguments->threads, "frames that are worked on side by side")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{64}))
+      ->capture_default_str();
+  command->footer(
+      "Examples:\n"
+      "  stillmap segment office --out office/detections --segmenter auto\n"
+      "  stillmap segment office --out found --segmenter onnx:yolov8n-seg.onnx --threads 4");
+  command->callback([arguments] { segment(*arguments); });
+}
+
+}  // namespace stillmap

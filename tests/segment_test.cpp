@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// `stillmap segment` with a detections folder in place of a network.
+#include <filesystem>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "stillmap/io/image_io.hpp"
+#include "tests/cli_fixture.hpp"
+
+namespace stillmap {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+class Segment : public Cli {
+ protected:
+  // Three frames of 64x48; detections of them in found/, a mask for the second.
+  Segment() {
+    for (const char* folder : {"s/rgb", "s/depth", "s/truth", "found/masks"}) {
+      std::filesystem::create_directories(folder_ / folder);
+    }
+    const ColorImage color(cv::Mat3b(48, 64, cv::Vec3b(9, 99, 199)));
+    const DepthImage depth(cv::Mat1f(48, 64, 1.0F));
+    std::string rgb, depths, lines;
+    for (const char* stamp : {"1.0", "1.1", "1.2"}) {
+      const std::string name = std::string(stamp) + ".png";
+      write("s/rgb/" + name, encode_png(color));
+      write("s/depth/" + name, encode_depth_png(depth, 5000));
+      rgb += std::string(stamp) + " rgb/" + name + '\n';
+      depths += std::string(stamp) + " depth/" + name + '\n';
+      lines +=
+          "{\"stamp\":\"" + std::string(stamp) +
+          "\",\"objects\":[{\"id\":4,\"class\":\"person\",\"score\":0.5,\"box\":[1,2,30,40]}]}\n";
+    }
+    write("s/rgb.txt", rgb);
+    write("s/depth.txt", depths);
+    write("found/detections.jsonl", lines);
+    cv::Mat1b mask = cv::Mat1b::zeros(48, 64);
+    mask(5, 6) = 4;
+    write("found/masks/1.1.png", encode_mask_png(mask));
+  }
+};
+
+TEST_F(Segment, WritesTheFolder) {
+  const Outcome outcome = run("segment s --out again --segmenter detections:found --threads 3");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.err, IsEmpty());
+  EXPECT_THAT(outcome.out, StartsWith("detections  3 objects in 3 frames, in again\n"));
+  EXPECT_EQ(content("again/detections.jsonl"), content("found/detections.jsonl"));
+  const cv::Mat1b mask = read_mask(folder_ / "again/masks/1.1.png");
+  EXPECT_EQ(mask(5, 6), 4);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "again/masks/1.0.png"));
+}
+
+TEST_F(Segment, ADamagedImageIsAFrameWithoutObjects) {
+  write("s/rgb/1.1.png", "");
+  const Outcome outcome = run("segment s --out again --segmenter detections:found");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.err, StartsWith("stillmap: warning: "));
+  EXPECT_THAT(outcome.err, HasSubstr("1.1.png"));
+  EXPECT_THAT(content("again/detections.jsonl"), HasSubstr("{\"stamp\":\"1.1\",\"objects\":[]}\n"));
+}
+
+TEST_F(Segment, NeverOverwritesItsInput) {
+  for (const char* out : {"s", "s/", "s/truth", "s/x/../truth", "s/rgb/x", "found"}) {
+    const Outcome outcome =
+        run("segment s --out " + std::string(out) + " --segmenter detections:found");
+    EXPECT_EQ(outcome.exit_code, 2) << out;
+    EXPECT_THAT(outcome.err, HasSubstr("would be overwritten")) << out;
+  }
+}
+
+TEST_F(Segment, SaysWhatIsMissing) {
+  const Outcome models = run("segment s --out again --segmenter auto", "STILLMAP_MODELS=none");
+  EXPECT_EQ(models.exit_code, 2);
+  EXPECT_THAT(models.err, HasSubstr("run tools/fetch_models"));
+  EXPECT_THAT(run("segment s --out again --segmenter yolo").err,
+              HasSubstr("--segmenter yolo: expected detections:DIR"));
+  EXPECT_THAT(run("segment none --out again --segmenter detections:found").err,
+              HasSubstr("none/rgb.txt is missing"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "again"));
+}
+
+}  // namespace
+}  // namespace stillmap
