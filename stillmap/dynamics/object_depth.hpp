@@ -41,14 +41,15 @@ struct ObjectDepths {
   std::optional<DepthInterval> interval;  ///< without the outliers; none when nothing is measured
 };
 
-/// The depths of an id's pixels (D_i, L and U of Fan 2020, Eqs. (2)-(3)). Outliers are farther from
-/// the median than `mad_factor` times 1.4826 times the median distance from it, and than
-/// `min_reach_m`. The median is known to a millimetre; depth beyond 16 m counts as missing.
-/// `mask` may be empty.
+/// Which depths of an object are outliers: those farther from the median than `mad_factor` times
+/// 1.4826 times the median distance from it, and farther than `min_reach_m`.
 struct OutlierRule {
   double mad_factor = 3.0;
   double min_reach_m = 0.0;
 };
+
+/// The depths of an id's pixels (D_i, L and U of Fan 2020, Eqs. (2)-(3)). The median is known to a
+/// millimetre; depth beyond 16 m counts as missing. `area` is the id's; `mask` may be empty.
 [[nodiscard]] ObjectDepths object_depths(const DepthImage& depth,
                                          const ObjectMask& mask,
                                          int id,
