@@ -10,7 +10,6 @@
 #include "apps/progress_bar.hpp"
 #include "stillmap/config/config_io.hpp"
 #include "stillmap/core/error.hpp"
-#include "stillmap/core/nearest_name.hpp"
 #include "stillmap/eval/ate.hpp"
 #include "stillmap/eval/rpe.hpp"
 #include "stillmap/io/atomic_file.hpp"
@@ -32,33 +31,19 @@ struct RunArguments {
   std::vector<std::string> settings;
   std::string camera;
   std::string segmenter = "none";
-  std::string dynamics = "off";
+  std::string dynamics;  // empty: as configured
   std::string frames;
   std::size_t stride = 1;
   int threads = 2;
   std::string groundtruth;
 };
 
-// What other versions can do is refused by name, not ignored.
-void check_modes(const RunArguments& arguments) {
-  const std::vector<std::string> modes = {"off", "mask", "paper", "full"};
-  if (std::ranges::find(modes, arguments.dynamics) == modes.end()) {
-    throw Error("--dynamics {}: {}", arguments.dynamics, name_hint(arguments.dynamics, modes));
-  }
-  if (arguments.dynamics != "off") {
-    throw Error("--dynamics {} is not in this version: use --dynamics off, for a static world",
-                arguments.dynamics);
-  }
-  if (arguments.segmenter != "none") {
-    throw Error("--segmenter {} is not in this version: use --segmenter none", arguments.segmenter);
-  }
-}
-
 SystemConfig make_config(const RunArguments& arguments) {
   SystemConfig config;
   const std::vector<FieldRef> fields = list_fields(config);
   if (!arguments.config_file.empty()) load_yaml(fields, arguments.config_file);
   for (const std::string& setting : arguments.settings) set_value(fields, setting);
+  if (!arguments.dynamics.empty()) set_value(fields, "dynamics.mode=" + arguments.dynamics);
   config.check();
   return config;
 }
@@ -105,14 +90,19 @@ std::string summary(const RunArguments& arguments, const RunReport& report) {
 }
 
 int run(const RunArguments& arguments) {
-  check_modes(arguments);
   SystemConfig config = make_config(arguments);
   const TumSequence sequence =
       TumSequence::open(arguments.sequence, {.camera = chosen_camera(arguments.camera)});
   std::optional<Trajectory> groundtruth = read_groundtruth(arguments, sequence);
+  const CameraModel& camera = sequence.camera();
+  const std::unique_ptr<Segmenter> segmenter =
+      arguments.segmenter == "none"
+          ? nullptr
+          : make_segmenter(arguments.segmenter, {camera.width_px, camera.height_px});
   prepare_run_folder(arguments.out);
 
   RunOptions options;
+  options.segmenter = segmenter.get();
   if (!arguments.frames.empty()) options.frames = parse_frames(arguments.frames);
   options.frames.stride = arguments.stride;
   options.threads = arguments.threads;
@@ -153,10 +143,15 @@ void add_settings(CLI::App& command, RunArguments& arguments) {
   command.add_option("--set", arguments.settings, "one setting, key=value; repeatable")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command.add_option("--segmenter", arguments.segmenter, "none, in this version")
+  command
+      .add_option("--segmenter",
+                  arguments.segmenter,
+                  "what finds people and things: none, detections:DIR, onnx:MODEL.onnx, or auto "
+                  "(the networks of `make models`)")
       ->capture_default_str();
-  command.add_option("--dynamics", arguments.dynamics, "off, in this version")
-      ->capture_default_str();
+  command.add_option("--dynamics",
+                     arguments.dynamics,
+                     "what is done about what moves: off, mask, paper or full; as dynamics.mode");
   command.add_option("--threads", arguments.threads, "1 or more; the result is the same")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();

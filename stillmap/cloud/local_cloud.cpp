@@ -63,7 +63,8 @@ class VoxelKeys {
 /// The pixels that have a usable point, by voxel.
 std::vector<IndexedKey> pixels_by_voxel(const cv::Mat1f& depth,
                                         const cv::Mat2f& rays,
-                                        const LocalCloudConfig& config) {
+                                        const LocalCloudConfig& config,
+                                        const cv::Mat1b& dynamic) {
   const VoxelKeys key_of(rays, config);
   const auto max_depth = static_cast<float>(config.max_depth_m);
   std::vector<IndexedKey> pixels;
@@ -71,7 +72,9 @@ std::vector<IndexedKey> pixels_by_voxel(const cv::Mat1f& depth,
   for (int row = 0; row < depth.rows; ++row) {
     const float* z = depth[row];
     const cv::Vec2f* ray = rays[row];
+    const std::uint8_t* moves = dynamic.empty() ? nullptr : dynamic[row];
     for (int x = 0; x < depth.cols; ++x) {
+      if (moves != nullptr && moves[x] != 0) continue;
       if (!(z[x] > 0 && z[x] <= max_depth)) continue;  // so written, NaN is left out too
       const std::uint64_t key = key_of(point_of(ray[x], z[x]));
       if (key == VoxelKeys::kOutside) continue;
@@ -112,12 +115,14 @@ std::size_t count_voxels(const std::vector<IndexedKey>& pixels) {
 
 PointCloud local_cloud(const RgbdFrame& frame,
                        const cv::Mat2f& rays,
-                       const LocalCloudConfig& config) {
+                       const LocalCloudConfig& config,
+                       const cv::Mat1b& dynamic) {
   const cv::Mat1f& depth = frame.depth.mat;
   const cv::Mat3b& color = frame.color.mat;
   STILLMAP_CHECK(depth.size() == rays.size() && color.size() == rays.size());
+  STILLMAP_CHECK(dynamic.empty() || dynamic.size() == rays.size());
   STILLMAP_CHECK(config.voxel_size_m > 0);
-  const std::vector<IndexedKey> pixels = pixels_by_voxel(depth, rays, config);
+  const std::vector<IndexedKey> pixels = pixels_by_voxel(depth, rays, config, dynamic);
   const std::size_t voxels = count_voxels(pixels);
   PointCloud cloud;
   cloud.positions.reserve(voxels);

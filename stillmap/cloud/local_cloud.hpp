@@ -32,12 +32,13 @@ struct LocalCloudConfig {
 /// adjustment or a closed loop, then costs nothing, as the pose is applied when the map is
 /// assembled (global_cloud; Fan 2020, Eq. (1)).
 ///
-/// Pixels without depth (0, negative, not finite) or with depth over `max_depth_m` are left out.
-/// The rest is thinned to one mean point a voxel, which bounds what a key frame keeps in memory by
-/// the surface it sees. `rays` are the camera's pixel_rays(), of the frame's size. Takes time
-/// linear in the number of pixels.
+/// Pixels without depth (0, negative, not finite), with depth over `max_depth_m` or where
+/// `dynamic`, which may be empty, is not 0 are left out. The rest is thinned to one mean point a
+/// voxel, which bounds what a key frame keeps in memory by the surface it sees. `rays` are the
+/// camera's pixel_rays(), of the frame's size. Takes time linear in the number of pixels.
 [[nodiscard]] PointCloud local_cloud(const RgbdFrame& frame,
                                      const cv::Mat2f& rays,
-                                     const LocalCloudConfig& config);
+                                     const LocalCloudConfig& config,
+                                     const cv::Mat1b& dynamic = {});
 
 }  // namespace stillmap

@@ -22,6 +22,17 @@ int cell_count(int length_px) {
   return std::max(1, length_px / kCellPx);
 }
 
+// Corners of a level's image; the mask is as large as the finest one.
+void remove_excluded(std::vector<cv::KeyPoint>& corners, const cv::Mat1b& mask, cv::Size level) {
+  const float scale_x = static_cast<float>(mask.cols) / static_cast<float>(level.width);
+  const float scale_y = static_cast<float>(mask.rows) / static_cast<float>(level.height);
+  std::erase_if(corners, [&](const cv::KeyPoint& corner) {
+    const int x = static_cast<int>((corner.pt.x + 0.5F) * scale_x);
+    const int y = static_cast<int>((corner.pt.y + 0.5F) * scale_y);
+    return mask(std::min(y, mask.rows - 1), std::min(x, mask.cols - 1)) != 0;
+  });
+}
+
 }  // namespace
 
 std::vector<float> pyramid_scales(const OrbConfig& config) {
@@ -65,7 +76,8 @@ void OrbExtractor::build_pyramid(const GrayImage& gray) {
   }
 }
 
-std::vector<cv::KeyPoint> OrbExtractor::detect(const cv::Mat1b& image) const {
+std::vector<cv::KeyPoint> OrbExtractor::detect(const cv::Mat1b& image,
+                                               const cv::Mat1b& excluded) const {
   constexpr int kMargin = kBorderPx - kFastRadiusPx;
   const cv::Rect area(kMargin, kMargin, image.cols - 2 * kMargin, image.rows - 2 * kMargin);
   std::vector<cv::KeyPoint> corners;
@@ -98,6 +110,7 @@ std::vector<cv::KeyPoint> OrbExtractor::detect(const cv::Mat1b& image) const {
     }
   }
   for (cv::KeyPoint& corner : corners) corner.pt += cv::Point2f(area.tl());
+  if (!excluded.empty()) remove_excluded(corners, excluded, image.size());
   return corners;
 }
 
@@ -134,12 +147,16 @@ void OrbExtractor::place_in_space(const DepthImage& depth, Features& features) c
   features.grid = FeatureGrid(features.px, camera_.width_px, camera_.height_px);
 }
 
-Features OrbExtractor::extract(const GrayImage& gray, const DepthImage& depth) {
+Features OrbExtractor::extract(const GrayImage& gray,
+                               const DepthImage& depth,
+                               const cv::Mat1b& excluded) {
   STILLMAP_CHECK(gray.mat.size() == depth.mat.size());
+  STILLMAP_CHECK(excluded.empty() || excluded.size() == depth.mat.size());
   build_pyramid(gray);
   Features features;
   for (std::size_t i = 0; i < levels_.size(); ++i) {
-    append(i, spread_evenly(detect(levels_[i].image), levels_[i].feature_count), features);
+    append(
+        i, spread_evenly(detect(levels_[i].image, excluded), levels_[i].feature_count), features);
   }
   place_in_space(depth, features);
   return features;

@@ -45,8 +45,11 @@ class OrbExtractor {
   OrbExtractor(const OrbConfig& config, const CameraModel& camera);
 
   /// Features of `gray`, at ideal and raw pixels, each with the depth that `depth` has there. The
-  /// images have the camera's size.
-  [[nodiscard]] Features extract(const GrayImage& gray, const DepthImage& depth);
+  /// images have the camera's size. None where `excluded`, which may be empty, is not 0: then the
+  /// rest of the image gets all of them.
+  [[nodiscard]] Features extract(const GrayImage& gray,
+                                 const DepthImage& depth,
+                                 const cv::Mat1b& excluded = {});
 
   /// Size of a pixel of each level in pixels of the full image.
   [[nodiscard]] const std::vector<float>& level_scales() const { return scales_; }
@@ -59,7 +62,8 @@ class OrbExtractor {
   };
 
   void build_pyramid(const GrayImage& gray);
-  [[nodiscard]] std::vector<cv::KeyPoint> detect(const cv::Mat1b& image) const;
+  [[nodiscard]] std::vector<cv::KeyPoint> detect(const cv::Mat1b& image,
+                                                 const cv::Mat1b& excluded) const;
   void append(std::size_t level,
               const std::vector<cv::KeyPoint>& corners,
               Features& features) const;

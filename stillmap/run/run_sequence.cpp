@@ -8,6 +8,7 @@
 
 #include "stillmap/core/error.hpp"
 #include "stillmap/run/frame_source.hpp"
+#include "stillmap/run/object_source.hpp"
 #include "stillmap/system/stopwatch.hpp"
 
 namespace stillmap {
@@ -114,22 +115,32 @@ SequenceRun run_sequence(const TumSequence& sequence,
   report.frames_total = frames.size();
 
   std::size_t done = 0;
+  const auto process = [&](FrameWithObjects ready) {
+    const FrameResult result = system.process(ready.frame, std::move(ready.objects));
+    add_frame(report, *ready.frame, result);
+    if (done * kSamples / frames.size() != (done + 1) * kSamples / frames.size()) {
+      report.samples.push_back(make_sample(*ready.frame, result.tracked));
+    }
+    ++done;
+    if (options.on_progress) options.on_progress(done, frames.size());
+  };
+  ObjectSource objects(options.segmenter, config.dynamics.tracker, FillRule::kBothWays);
   Stopwatch waiting;
   while (std::optional<SourcedFrame> next = source.next()) {
     add_stage_time(report.stages, "reading", waiting.lap_ms());
     if (next->frame == nullptr) {
       skip_frame(report, sequence.entry(next->id).stamp, next->damage, options);
-    } else {
-      const FrameResult result = system.process(next->frame);
-      add_frame(report, *next->frame, result);
-      if (done * kSamples / frames.size() != (done + 1) * kSamples / frames.size()) {
-        report.samples.push_back(make_sample(*next->frame, result.tracked));
-      }
+      ++done;
+      continue;
     }
-    ++done;
-    if (options.on_progress) options.on_progress(done, frames.size());
+    std::vector<FrameWithObjects> ready = objects.push(std::move(next->frame));
+    if (options.segmenter != nullptr) {
+      add_stage_time(report.stages, "segmentation", waiting.lap_ms());
+    }
+    for (FrameWithObjects& frame : ready) process(std::move(frame));
     waiting.lap_ms();
   }
+  for (FrameWithObjects& frame : objects.flush()) process(std::move(frame));
   run.result = system.finish();
   report.camera = sequence.camera();
   report.camera.readout_s = system.readout_s();

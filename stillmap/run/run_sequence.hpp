@@ -8,6 +8,7 @@
 
 #include "stillmap/io/tum_sequence.hpp"
 #include "stillmap/report/run_report.hpp"
+#include "stillmap/segmentation/segmenter.hpp"
 #include "stillmap/system/system.hpp"
 
 namespace stillmap {
@@ -25,6 +26,7 @@ struct FrameSelection {
 struct RunOptions {
   FrameSelection frames;
   int threads = 2;
+  const Segmenter* segmenter = nullptr;  ///< what finds objects; none where null
   std::function<void(std::size_t done, std::size_t total)> on_progress;  ///< may be empty
   std::function<void(const std::string&)> on_warning;                    ///< may be empty
 };

@@ -8,6 +8,7 @@
 #include "stillmap/features/orb_extractor.hpp"
 #include "stillmap/mapping/local_mapper.hpp"
 #include "stillmap/optim/measurement_model.hpp"
+#include "stillmap/system/dynamics_stage.hpp"
 #include "stillmap/tracking/keyframe_policy.hpp"
 #include "stillmap/tracking/relocalizer.hpp"
 #include "stillmap/tracking/tracker.hpp"
@@ -40,6 +41,7 @@ struct SystemConfig {
   std::uint32_t seed = 0;
   TrackingConfig tracking;
   MeasurementConfig measurement;
+  DynamicsConfig dynamics;
   KeyframePolicyConfig keyframe;
   RelocalizerConfig relocalization;
   MappingConfig mapping;
@@ -51,6 +53,7 @@ struct SystemConfig {
     visit("seed", self.seed, FieldInfo{"of every random choice"});
     visit.group("tracking", self.tracking);
     visit.group("measurement", self.measurement);
+    visit.group("dynamics", self.dynamics);
     visit.group("keyframe", self.keyframe);
     visit.group("relocalization", self.relocalization);
     visit.group("mapping", self.mapping);

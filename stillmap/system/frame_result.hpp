@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "stillmap/system/dynamics_stage.hpp"
 #include "stillmap/tracking/tracked_frame.hpp"
 
 namespace stillmap {
@@ -16,6 +17,7 @@ struct StageTime {
 /// What the system tells of one frame.
 struct FrameResult {
   TrackedFrame tracked;
+  FrameDynamics dynamics;  ///< empty when nothing is done about what moves
   bool is_keyframe = false;
   double pose_ms = 0;             ///< from the frame's arrival to its pose
   std::vector<StageTime> stages;  ///< of this thread, in order; "mapping" includes waiting for it

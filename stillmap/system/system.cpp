@@ -25,6 +25,7 @@ System::System(const SystemConfig& config, const CameraModel& camera, int thread
     : config_(checked(config)),
       camera_(camera),
       rays_(pixel_rays(camera)),
+      dynamics_(config.dynamics, camera),
       extractor_(config.tracking.orb, camera),
       measure_(config.measurement, extractor_.level_scales()),
       map_(extractor_.level_scales()),
@@ -33,14 +34,19 @@ System::System(const SystemConfig& config, const CameraModel& camera, int thread
       mapping_jobs_(worker_.get()),
       cloud_jobs_(worker_.get()) {}
 
-FrameResult System::process(const FramePtr& frame) {
+FrameResult System::process(const FramePtr& frame, FrameObjects objects) {
   Stopwatch total, stage;
   FrameResult result;
   for (const MapUpdate& update : mapping_jobs_.collect_due(frame_number_)) map_.apply(update);
   collect_clouds(frame_number_);
   result.stages.push_back({"mapping", stage.lap_ms()});
 
-  Features features = extractor_.extract(frame->gray, frame->depth);
+  if (dynamics_.enabled()) {
+    result.dynamics = dynamics_.judge(
+        *frame, std::move(objects), tracker_.expected_pose(frame->stamp.seconds, map_));
+    result.stages.push_back({"dynamics", stage.lap_ms()});
+  }
+  Features features = extractor_.extract(frame->gray, frame->depth, result.dynamics.excluded);
   result.stages.push_back({"features", stage.lap_ms()});
 
   result.tracked = track(*frame, std::move(features));
@@ -52,10 +58,14 @@ FrameResult System::process(const FramePtr& frame) {
   ++since_keyframe_.frames;
   if (tracked.status == TrackingStatus::kInitialized ||
       wants_keyframe(config_.keyframe, tracked, since_keyframe_)) {
-    tracked.reference = insert_keyframe(frame, tracked);
+    tracked.reference = insert_keyframe(frame, result);
     result.is_keyframe = true;
   }
   if (has_pose(tracked)) record(*frame, tracked, tracked.T_world_camera);
+  if (dynamics_.enabled()) {
+    has_pose(tracked) ? dynamics_.remember(*frame, tracked.T_world_camera, result.dynamics)
+                      : dynamics_.forget();
+  }
   result.stages.push_back({"keyframe", stage.lap_ms()});
   lost_ = !has_pose(tracked);
   ++frame_number_;
@@ -91,7 +101,8 @@ void System::count_landmarks(const TrackedFrame& tracked) {
   }
 }
 
-KeyframeId System::insert_keyframe(const FramePtr& frame, const TrackedFrame& tracked) {
+KeyframeId System::insert_keyframe(const FramePtr& frame, const FrameResult& result) {
+  const TrackedFrame& tracked = result.tracked;
   Keyframe keyframe;
   keyframe.frame = frame->id;
   keyframe.stamp = frame->stamp;
@@ -114,9 +125,10 @@ KeyframeId System::insert_keyframe(const FramePtr& frame, const TrackedFrame& tr
       frame_number_ + config_.mapping.lag_frames, [window, core = std::move(core), this] {
         return map_locally(std::move(*window), core, camera_, measure_, config_.mapping);
       });
-  cloud_jobs_.submit(frame_number_ + config_.mapping.lag_frames, [frame, id, this] {
-    return std::pair(id,
-                     std::make_shared<const PointCloud>(local_cloud(*frame, rays_, config_.cloud)));
+  const cv::Mat1b dynamic = result.dynamics.excluded;
+  cloud_jobs_.submit(frame_number_ + config_.mapping.lag_frames, [frame, dynamic, id, this] {
+    return std::pair(
+        id, std::make_shared<const PointCloud>(local_cloud(*frame, rays_, config_.cloud, dynamic)));
   });
   return id;
 }

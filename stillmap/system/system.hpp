@@ -10,6 +10,7 @@
 #include "stillmap/core/trajectory.hpp"
 #include "stillmap/map/map.hpp"
 #include "stillmap/system/config.hpp"
+#include "stillmap/system/dynamics_stage.hpp"
 #include "stillmap/system/frame_result.hpp"
 #include "stillmap/system/job_ledger.hpp"
 #include "stillmap/system/worker.hpp"
@@ -34,8 +35,9 @@ class System {
   /// Throws Error for settings that contradict each other.
   System(const SystemConfig& config, const CameraModel& camera, int threads);
 
-  /// Tracks a frame; it may become a key frame. Frames have the camera's size.
-  FrameResult process(const FramePtr& frame);
+  /// Tracks a frame; it may become a key frame. Frames have the camera's size. `objects`: what a
+  /// network has found in it, if there is one.
+  FrameResult process(const FramePtr& frame, FrameObjects objects = {});
 
   /// Ends the run: waits for pending work and assembles the cloud. Call once.
   [[nodiscard]] RunResult finish();
@@ -53,7 +55,7 @@ class System {
   };
 
   [[nodiscard]] TrackedFrame track(const RgbdFrame& frame, Features features);
-  [[nodiscard]] KeyframeId insert_keyframe(const FramePtr& frame, const TrackedFrame& tracked);
+  [[nodiscard]] KeyframeId insert_keyframe(const FramePtr& frame, const FrameResult& result);
   void count_landmarks(const TrackedFrame& tracked);
   void collect_clouds(std::int64_t frame);
   void record(const RgbdFrame& frame,
@@ -65,6 +67,7 @@ class System {
   SystemConfig config_;
   CameraModel camera_;
   cv::Mat2f rays_;
+  DynamicsStage dynamics_;
   OrbExtractor extractor_;
   MeasurementModel measure_;
   Map map_;

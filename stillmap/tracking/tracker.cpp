@@ -123,6 +123,11 @@ Eigen::Isometry3d Tracker::last_pose(const Map& map) const {
   return map.T_world_keyframe(last_->reference) * T_reference_last_;
 }
 
+std::optional<Eigen::Isometry3d> Tracker::expected_pose(double stamp_s, const Map& map) const {
+  if (lost_ || !last_) return std::nullopt;
+  return last_pose(map) * motion_.predict(stamp_s - last_->stamp_s);
+}
+
 void Tracker::remember(const TrackedFrame& frame, const Map& map) {
   if (lost_) {
     motion_.reset();
@@ -196,9 +201,7 @@ Tracker::Matches Tracker::match_last_frame(const Features& features,
 std::optional<Tracker::PoseFromMatches> Tracker::track_last_frame(const TrackedFrame& frame,
                                                                   const Features& features,
                                                                   const Map& map) const {
-  const Eigen::Isometry3d T_world_predicted =
-      last_pose(map) * motion_.predict(frame.stamp_s - last_->stamp_s);
-  const Eigen::Isometry3d T_camera_world = T_world_predicted.inverse();
+  const Eigen::Isometry3d T_camera_world = expected_pose(frame.stamp_s, map)->inverse();
   Matches matches = match_last_frame(features, map, T_camera_world, config_.frame_search_radius_px);
   if (std::ssize(matches) < kMinFrameMatches) {
     matches = match_last_frame(features, map, T_camera_world, 2 * config_.frame_search_radius_px);

@@ -61,6 +61,11 @@ class Tracker {
 
   [[nodiscard]] TrackedFrame track(const RgbdFrame& frame, Features features, const Map& map);
 
+  /// Where the camera should be at a time soon after the last frame; nothing when it is lost or has
+  /// not begun.
+  [[nodiscard]] std::optional<Eigen::Isometry3d> expected_pose(double stamp_s,
+                                                               const Map& map) const;
+
   /// The camera's rolling shutter, as learnt so far.
   [[nodiscard]] double readout_s() const { return readout_.readout_s(); }
 

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "stillmap/core/rgbd_frame.hpp"
+#include "stillmap/dynamics/dynamic_objects.hpp"
+#include "stillmap/dynamics/motion_state.hpp"
+#include "stillmap/dynamics/object_tracker.hpp"
+
+namespace stillmap {
+
+struct DynamicsConfig {
+  std::string mode = "off";
+  double feature_margin_px = 4;
+  int compare_frames = 15;
+  DynamicObjectsConfig objects;
+  ObjectTrackerConfig tracker;
+  MotionStateConfig motion;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("mode",
+          self.mode,
+          FieldInfo{"what is done about what moves", "", 0, 0, {"off", "mask", "paper", "full"}});
+    visit("feature_margin_px",
+          self.feature_margin_px,
+          FieldInfo{"features this near to what moves are not used", "px", 0, 50});
+    visit(
+        "compare_frames",
+        self.compare_frames,
+        FieldInfo{"full: how long ago the frame is that depth is compared with", "frames", 1, 60});
+    DynamicObjectsConfig::fields(self.objects, visit);
+    visit.group("tracker", self.tracker);
+    visit.group("motion", self.motion);
+  }
+};
+
+/// What the dynamics stage makes of one frame.
+struct FrameDynamics {
+  FrameObjects objects;
+  DynamicsResult judged;
+  std::vector<ObjectMotion> motions;  ///< of `objects`, in their order; empty without a pose
+  cv::Mat1b excluded;                 ///< not 0 where no feature may be
+};
+
+/// Says which pixels of each frame must not be taken for the static world, and remembers what it
+/// takes to say so of the next.
+class DynamicsStage {
+ public:
+  DynamicsStage(const DynamicsConfig& config, const CameraModel& camera);
+
+  /// Whether there is anything to do: the mode is not "off".
+  [[nodiscard]] bool enabled() const { return objects_.has_value(); }
+
+  /// Judges a frame whose pose is only expected; none when nothing is.
+  [[nodiscard]] FrameDynamics judge(
+      const RgbdFrame& frame,
+      FrameObjects objects,
+      const std::optional<Eigen::Isometry3d>& T_world_camera_expected) const;
+
+  /// The frame has a pose now: how its objects move; later frames are compared with it.
+  void remember(const RgbdFrame& frame,
+                const Eigen::Isometry3d& T_world_camera,
+                FrameDynamics& dynamics);
+
+  /// Tracking was lost: earlier poses say nothing of later ones.
+  void forget() { past_.clear(); }
+
+ private:
+  struct PastFrame {
+    DepthImage depth;
+    cv::Mat1b dynamic;
+    Eigen::Isometry3d T_world_camera;
+  };
+  [[nodiscard]] std::optional<PreviousDepth> previous(
+      const std::optional<Eigen::Isometry3d>& T_world_camera) const;
+
+  DynamicsConfig config_;
+  std::optional<DynamicObjects> objects_;
+  MotionStates motions_;
+  std::deque<PastFrame> past_;  // the newest last
+};
+
+}  // namespace stillmap
