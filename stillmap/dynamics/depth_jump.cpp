@@ -121,6 +121,18 @@ cv::Mat1b depth_jumps(const DepthImage& current, const DepthImage& previous, dou
   return jumps;
 }
 
+void WarpedDepth::fill_from(const WarpedDepth& other) {
+  if (mat.empty()) {
+    mat = other.mat.clone();
+    return;
+  }
+  for (int row = 0; row < mat.rows; ++row) {
+    float* cell = mat[row];
+    const float* known = other.mat[row];
+    for (int c = 0; c < mat.cols; ++c) cell[c] = cell[c] > 0 ? cell[c] : known[c];
+  }
+}
+
 DepthWarper::DepthWarper(const CameraModel& camera)
     : camera_(camera),
       ray_x_(cells_in(camera.height_px), cells_in(camera.width_px)),

@@ -53,6 +53,10 @@ struct DepthJumpConfig {
 /// image: cell (r, c) is pixel (2r, 2c). 0 where nothing is known.
 struct WarpedDepth {
   cv::Mat1f mat;
+
+  /// Takes what `other` knows where this knows nothing. Both of the same camera; an empty one knows
+  /// nothing.
+  void fill_from(const WarpedDepth& other);
 };
 
 /// Warps depth images of a camera, distortion included, from one pose of it to another.

@@ -89,7 +89,7 @@ DynamicObjects::DynamicObjects(const DynamicObjectsConfig& config,
 
 DynamicsResult DynamicObjects::judge(const DepthImage& depth,
                                      const FrameObjects& objects,
-                                     const std::optional<PreviousDepth>& previous,
+                                     std::span<const PreviousDepth> previous,
                                      std::span<const TrackId> moving) const {
   STILLMAP_CHECK(objects.mask.mat.empty() || objects.mask.mat.size() == depth.mat.size());
   const MaskAreas areas = mask_areas(objects.mask);
@@ -106,10 +106,12 @@ DynamicsResult DynamicObjects::judge(const DepthImage& depth,
   result.mask.raw = dynamic_pixels(objects, areas, result.states, depth.mat.size());
   WarpedDepth expected;
   cv::Mat1f known_static;
-  if (mode_ == DynamicsMode::kFull && previous) {
-    expected = warper_.warp(previous->depth, previous->T_current_previous, previous->dynamic);
+  if (mode_ == DynamicsMode::kFull && !previous.empty()) {
+    for (const PreviousDepth& earlier : previous) {
+      expected.fill_from(warper_.warp(earlier.depth, earlier.T_current_previous, earlier.dynamic));
+    }
     // Without the dynamic pixels of then, what is as it was may just not have moved yet.
-    if (!previous->dynamic.empty()) known_static = expected.mat;
+    if (!previous.front().dynamic.empty()) known_static = expected.mat;
   }
   result.mask.extended =
       mode_ == DynamicsMode::kMask
@@ -188,11 +190,12 @@ cv::Mat1b DynamicObjects::extended_mask(const DepthImage& depth,
 }
 
 cv::Mat1b DynamicObjects::jumps(const DepthImage& depth,
-                                const std::optional<PreviousDepth>& previous,
+                                std::span<const PreviousDepth> previous,
                                 const WarpedDepth& expected) const {
-  if (!previous || mode_ == DynamicsMode::kMask) return {depth.mat.size(), std::uint8_t{kNoJump}};
+  if (previous.empty() || mode_ == DynamicsMode::kMask)
+    return {depth.mat.size(), std::uint8_t{kNoJump}};
   if (mode_ == DynamicsMode::kFull) return depth_jumps(depth, expected, config_.jump);
-  return depth_jumps(depth, previous->depth, config_.jump.paper_jump_m);
+  return depth_jumps(depth, previous.front().depth, config_.jump.paper_jump_m);
 }
 
 }  // namespace stillmap

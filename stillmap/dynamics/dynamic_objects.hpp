@@ -84,7 +84,8 @@ struct DynamicsResult {
 
 /// An earlier frame, for what has changed since. kPaper compares with the frame right before, pixel
 /// by pixel. For kFull one from 10 to 20 frames before, with its dynamic pixels, is best: what
-/// moves has left its place by then, and what has not changed is known to stand still.
+/// moves has left its place by then, and what has not changed is known to stand still. Still
+/// earlier ones tell what is behind those who were in the way then.
 struct PreviousDepth {
   DepthImage depth;
   Eigen::Isometry3d T_current_previous = Eigen::Isometry3d::Identity();
@@ -98,11 +99,11 @@ class DynamicObjects {
   /// Throws Error for categories that make no sense.
   DynamicObjects(const DynamicObjectsConfig& config, const CameraModel& camera, DynamicsMode mode);
 
-  /// `previous` may be absent: then nothing has jumped. kPaper needs no motion of it. `moving`:
-  /// tracks known to move, dynamic in kFull whoever is near.
+  /// `previous`: earlier frames, the best first; without any nothing has jumped. kPaper needs one,
+  /// and no motion of it. `moving`: tracks known to move, dynamic in kFull whoever is near.
   [[nodiscard]] DynamicsResult judge(const DepthImage& depth,
                                      const FrameObjects& objects,
-                                     const std::optional<PreviousDepth>& previous,
+                                     std::span<const PreviousDepth> previous,
                                      std::span<const TrackId> moving = {}) const;
 
   [[nodiscard]] const CategoryTable& categories() const { return categories_; }
@@ -120,7 +121,7 @@ class DynamicObjects {
                                         const std::vector<ObjectState>& states,
                                         const cv::Mat1f& known_static) const;
   [[nodiscard]] cv::Mat1b jumps(const DepthImage& depth,
-                                const std::optional<PreviousDepth>& previous,
+                                std::span<const PreviousDepth> previous,
                                 const WarpedDepth& expected) const;
 
   DynamicObjectsConfig config_;

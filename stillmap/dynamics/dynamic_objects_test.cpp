@@ -2,6 +2,7 @@
 #include "stillmap/dynamics/dynamic_objects.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <memory>
@@ -48,8 +49,7 @@ struct Office {
 
   [[nodiscard]] DynamicsResult judge(DynamicsMode mode,
                                      std::span<const TrackId> moving = {}) const {
-    return DynamicObjects({}, builtin_camera("tum_fr3"), mode)
-        .judge(depth, objects, std::nullopt, moving);
+    return DynamicObjects({}, builtin_camera("tum_fr3"), mode).judge(depth, objects, {}, moving);
   }
 };
 
@@ -113,7 +113,7 @@ TEST(DynamicObjects, AnEmptyFrameHasNothing) {
   const DepthImage depth(cv::Mat1f(480, 640, 2.0F));
   const DynamicsResult result =
       DynamicObjects({}, builtin_camera("tum_fr3"), DynamicsMode::kFull)
-          .judge(depth, {}, PreviousDepth{depth, Eigen::Isometry3d::Identity()});
+          .judge(depth, {}, std::array{PreviousDepth{depth, Eigen::Isometry3d::Identity()}});
   EXPECT_TRUE(result.states.empty());
   EXPECT_EQ(cv::countNonZero(result.mask.extended | result.mask.jumps | result.mask.raw), 0);
 }
@@ -125,7 +125,7 @@ TEST(DynamicObjects, GarbageInTheDepthHarmsNothing) {
   for (float& z : office.depth.mat) {
     if (rng.uniform(0, 3) == 0) z = garbage[static_cast<std::size_t>(rng.uniform(0, 7))];
   }
-  const PreviousDepth before{office.depth, Eigen::Isometry3d::Identity()};
+  const std::array before{PreviousDepth{office.depth, Eigen::Isometry3d::Identity()}};
   for (const DynamicsMode mode : {DynamicsMode::kPaper, DynamicsMode::kFull}) {
     const DynamicsResult result = DynamicObjects({}, builtin_camera("tum_fr3"), mode)
                                       .judge(office.depth, office.objects, before);
@@ -172,10 +172,10 @@ Result run_on(const TruthSequence& data, DynamicsMode mode) {
   for (std::uint32_t i = 16; i < sequence.size(); i += 9) {
     const auto [old, old_objects] = frame_with_objects(data, i - back);
     const auto [frame, objects] = frame_with_objects(data, i);
-    const PreviousDepth before{
+    const std::array before{PreviousDepth{
         old->depth,
         pose_at(poses, frame->stamp.seconds).inverse() * pose_at(poses, old->stamp.seconds),
-        dynamics.judge(old->depth, old_objects, std::nullopt).mask.extended};
+        dynamics.judge(old->depth, old_objects, {}).mask.extended}};
     const auto begin = std::chrono::steady_clock::now();
     const DynamicsResult judged = dynamics.judge(frame->depth, objects, before);
     const std::chrono::duration<double, std::milli> spent =

@@ -203,7 +203,7 @@ MotionScore score_motion(const TruthSequence& data) {
     const FramePtr frame = sequence.read(FrameId(i));
     const std::optional<FrameObjects> objects =
         tracker.push({frame->id, data.detections(i), frame->depth});
-    const DynamicsResult judged = dynamics.judge(frame->depth, *objects, std::nullopt);
+    const DynamicsResult judged = dynamics.judge(frame->depth, *objects, {});
     const std::vector<ObjectMotion> motions =
         states.update(*objects, frame->depth, judged.states, pose_at(poses, frame->stamp.seconds));
     const TruthSequence::Frame truth = data.truth(i);

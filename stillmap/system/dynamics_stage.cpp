@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stillmap/system/dynamics_stage.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -39,13 +40,28 @@ cv::Mat1b widened(const cv::Mat1b& mask, double margin_px) {
 DynamicsStage::DynamicsStage(const DynamicsConfig& config, const CameraModel& camera)
     : config_(config), objects_(make_objects(config, camera)), motions_(config.motion, camera) {}
 
-std::optional<PreviousDepth> DynamicsStage::previous(
+// The newest frame that is at least so old.
+const DynamicsStage::PastFrame* DynamicsStage::past_frame(std::int64_t frames_ago) const {
+  for (auto frame = past_.rbegin(); frame != past_.rend(); ++frame) {
+    if (number_ - frame->number >= frames_ago) return &*frame;
+  }
+  return nullptr;
+}
+
+std::vector<PreviousDepth> DynamicsStage::previous(
     const std::optional<Eigen::Isometry3d>& T_world_camera) const {
-  if (past_.empty()) return std::nullopt;
-  if (config_.mode == "paper") return PreviousDepth{past_.back().depth};
-  if (config_.mode != "full" || !T_world_camera) return std::nullopt;
-  const PastFrame& past = past_.front();
-  return PreviousDepth{past.depth, T_world_camera->inverse() * past.T_world_camera, past.dynamic};
+  std::vector<PreviousDepth> frames;
+  if (config_.mode == "paper" && last_) frames.push_back({last_->depth});
+  if (config_.mode != "full" || !T_world_camera || past_.empty()) return frames;
+  const auto add = [&](const PastFrame& past) {
+    frames.push_back({past.depth, T_world_camera->inverse() * past.T_world_camera, past.dynamic});
+  };
+  for (const int age : {1, 2, 4}) {
+    const PastFrame* past = past_frame(std::int64_t{age} * config_.compare_frames);
+    if (past != nullptr) add(*past);
+  }
+  if (frames.empty()) add(past_.front());
+  return frames;
 }
 
 FrameDynamics DynamicsStage::judge(
@@ -66,8 +82,12 @@ void DynamicsStage::remember(const RgbdFrame& frame,
                              FrameDynamics& dynamics) {
   dynamics.motions =
       motions_.update(dynamics.objects, frame.depth, dynamics.judged.states, T_world_camera);
-  past_.push_back({frame.depth, covered(dynamics.judged.mask), T_world_camera});
-  if (std::ssize(past_) > config_.compare_frames) past_.pop_front();
+  last_ = PastFrame{frame.depth, covered(dynamics.judged.mask), T_world_camera, number_++};
+  // A third of the age's precision is enough, and a third of the memory.
+  const int step = std::max(1, config_.compare_frames / 3);
+  if (last_->number % step == 0) past_.push_back(*last_);
+  const std::int64_t oldest = number_ - std::int64_t{4} * config_.compare_frames - step;
+  while (!past_.empty() && past_.front().number < oldest) past_.pop_front();
 }
 
 }  // namespace stillmap

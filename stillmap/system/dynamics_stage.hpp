@@ -29,10 +29,12 @@ struct DynamicsConfig {
     visit("feature_margin_px",
           self.feature_margin_px,
           FieldInfo{"features this near to what moves are not used", "px", 0, 50});
-    visit(
-        "compare_frames",
-        self.compare_frames,
-        FieldInfo{"full: how long ago the frame is that depth is compared with", "frames", 1, 60});
+    visit("compare_frames",
+          self.compare_frames,
+          FieldInfo{"full: how long ago depth was that it is compared with; also twice and 4 times",
+                    "frames",
+                    1,
+                    60});
     DynamicObjectsConfig::fields(self.objects, visit);
     visit.group("tracker", self.tracker);
     visit.group("motion", self.motion);
@@ -68,21 +70,28 @@ class DynamicsStage {
                 FrameDynamics& dynamics);
 
   /// Tracking was lost: earlier poses say nothing of later ones.
-  void forget() { past_.clear(); }
+  void forget() {
+    last_.reset();
+    past_.clear();
+  }
 
  private:
   struct PastFrame {
     DepthImage depth;
     cv::Mat1b dynamic;
     Eigen::Isometry3d T_world_camera;
+    std::int64_t number;
   };
-  [[nodiscard]] std::optional<PreviousDepth> previous(
+  [[nodiscard]] std::vector<PreviousDepth> previous(
       const std::optional<Eigen::Isometry3d>& T_world_camera) const;
+  [[nodiscard]] const PastFrame* past_frame(std::int64_t frames_ago) const;
 
   DynamicsConfig config_;
   std::optional<DynamicObjects> objects_;
   MotionStates motions_;
-  std::deque<PastFrame> past_;  // the newest last
+  std::optional<PastFrame> last_;
+  std::deque<PastFrame> past_;  // some of those before, the newest last
+  std::int64_t number_ = 0;     // of frames remembered
 };
 
 }  // namespace stillmap
