@@ -118,8 +118,8 @@ TEST_F(Run, RefusesWrongArguments) {
   expect_refused("wall --out out --set mapping.lag_frames=9", "keyframe.min_gap_frames");
   expect_refused("wall --out out --set loop.enabled=true", "loop.enabled");
   expect_refused("wall --out out --dynamics ful", "did you mean 'full'?");
-  expect_refused("wall --out out --dynamics full", "not in this version");
-  expect_refused("wall --out out --segmenter auto", "not in this version");
+  expect_refused("wall --out out --segmenter detections:nowhere", "nowhere");
+  expect_refused("wall --out out --segmenter sometimes", "--segmenter sometimes");
   for (const char* frames : {"5", "9:3", "a:b", ":-1", "4:4"}) {
     expect_refused("wall --out out --frames " + std::string(frames), "expected A:B");
   }

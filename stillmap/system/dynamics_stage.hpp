@@ -14,7 +14,7 @@
 namespace stillmap {
 
 struct DynamicsConfig {
-  std::string mode = "off";
+  std::string mode = "full";
   double feature_margin_px = 4;
   int compare_frames = 15;
   DynamicObjectsConfig objects;
