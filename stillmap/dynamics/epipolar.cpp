@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
@@ -136,14 +137,14 @@ std::optional<FundamentalEstimate> estimate_fundamental(std::span<const PointMat
                                                         int max_iterations,
                                                         std::mt19937& rng) {
   if (matches.size() < kSample) return std::nullopt;
-  std::optional<Eigen::Matrix3d> best_F;
-  Scored best;
+  Eigen::Matrix3d best_F = Eigen::Matrix3d::Zero();
+  Scored best{{}, 0, std::numeric_limits<double>::infinity()};
   int iterations = max_iterations;
   const auto offer = [&](const std::optional<Eigen::Matrix3d>& F) {
     if (!F) return;
     Scored scored = score(*F, matches, bound_px);
-    if (best_F && scored.cost >= best.cost) return;
-    best_F = F;
+    if (scored.cost >= best.cost) return;
+    best_F = *F;
     best = std::move(scored);
     iterations = draws_needed(best.inliers, matches.size(), max_iterations);
   };
@@ -155,8 +156,8 @@ std::optional<FundamentalEstimate> estimate_fundamental(std::span<const PointMat
     }
     offer(eight_point(fitting));
   }
-  if (!best_F || best.inliers < static_cast<int>(kSample)) return std::nullopt;
-  return FundamentalEstimate{*best_F, std::move(best.inlier), best.inliers};
+  if (best.inliers < static_cast<int>(kSample)) return std::nullopt;
+  return FundamentalEstimate{best_F, std::move(best.inlier), best.inliers};
 }
 
 }  // namespace stillmap
