@@ -126,7 +126,8 @@ FeatureFate FeatureSifter::in_box(const std::optional<MatchVerdict>& verdict) co
   const MatchVerdict known = verdict.value_or(MatchVerdict::kUnknown);
   if (known == MatchVerdict::kStatic) return FeatureFate::kStaticInBox;
   if (known == MatchVerdict::kDynamic) return FeatureFate::kDynamic;
-  return mode_ == DynamicsMode::kPaper ? FeatureFate::kDynamic : FeatureFate::kStable;
+  const bool kept = mode_ == DynamicsMode::kFull || config_.static_matches.keep_unmatched;
+  return kept ? FeatureFate::kStable : FeatureFate::kDynamic;
 }
 
 bool FeatureSifter::dropped(FeatureFate fate) const {
