@@ -21,6 +21,7 @@ enum DepthJump : std::uint8_t {
 };
 
 struct DepthJumpConfig {
+  bool enabled = true;
   double jump_m = 0.1;
   double jump_per_m = 0.01;
   bool revealed = false;
@@ -28,6 +29,7 @@ struct DepthJumpConfig {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
+    visit("enabled", self.enabled, FieldInfo{"remove what suddenly has another depth"});
     visit("jump_m",
           self.jump_m,
           FieldInfo{"change of depth against the warped frame before, besides noise", "m", 0, 100});

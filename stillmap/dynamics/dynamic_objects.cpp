@@ -114,7 +114,7 @@ DynamicsResult DynamicObjects::judge(const DepthImage& depth,
     if (!previous.front().dynamic.empty()) known_static = expected.mat;
   }
   result.mask.extended =
-      mode_ == DynamicsMode::kMask
+      mode_ == DynamicsMode::kMask || !config_.extension.enabled
           ? result.mask.raw
           : extended_mask(depth, objects, areas, depths, result.states, known_static);
   result.mask.jumps = jumps(depth, previous, expected);
@@ -135,7 +135,8 @@ std::vector<ObjectState> DynamicObjects::judge_states(const FrameObjects& object
   std::vector<ObjectState> states;
   for (std::size_t i = 0; i < objects.objects.size(); ++i) {
     ObjectState state = state_by_class(objects.objects[i], depths[i]);
-    if (state.category == Category::kPotentiallyDynamic && mode_ != DynamicsMode::kMask) {
+    if (state.category == Category::kPotentiallyDynamic && mode_ != DynamicsMode::kMask &&
+        config_.interaction.enabled) {
       const Interaction touch = judge_interaction({state.box, state.depths}, people);
       state.reason = reason_of(touch.contact);
       state.dynamic = touch.interacts();
@@ -192,8 +193,9 @@ cv::Mat1b DynamicObjects::extended_mask(const DepthImage& depth,
 cv::Mat1b DynamicObjects::jumps(const DepthImage& depth,
                                 std::span<const PreviousDepth> previous,
                                 const WarpedDepth& expected) const {
-  if (previous.empty() || mode_ == DynamicsMode::kMask)
+  if (previous.empty() || mode_ == DynamicsMode::kMask || !config_.jump.enabled) {
     return {depth.mat.size(), std::uint8_t{kNoJump}};
+  }
   if (mode_ == DynamicsMode::kFull) return depth_jumps(depth, expected, config_.jump);
   return depth_jumps(depth, previous.front().depth, config_.jump.paper_jump_m);
 }

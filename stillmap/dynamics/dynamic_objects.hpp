@@ -27,14 +27,25 @@ enum class DynamicsMode : std::uint8_t {
   kFull,   ///< extension as configured, jumps against warped static depth, what is seen to move
 };
 
+struct InteractionConfig {
+  bool enabled = true;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("enabled", self.enabled, FieldInfo{"what a person is at is taken as dynamic"});
+  }
+};
+
 struct DynamicObjectsConfig {
   CategoryConfig categories;
+  InteractionConfig interaction;
   MaskExtensionConfig extension;
   DepthJumpConfig jump;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit.group("categories", self.categories);
+    visit.group("interaction", self.interaction);
     visit.group("extension", self.extension);
     visit.group("jump", self.jump);
   }
@@ -45,7 +56,7 @@ enum class StateReason : std::uint8_t {
   kStaticClass,   ///< static
   kBoxesApart,    ///< static: nobody near it in the image
   kDepthsApart,   ///< static: somebody before or behind it
-  kNotAsked,      ///< static: interaction is not judged (DynamicsMode::kMask)
+  kNotAsked,      ///< static: interaction is not judged
   kDynamicClass,  ///< dynamic: it moves by itself
   kTouching,      ///< dynamic: somebody is at it
   kDepthUnknown,  ///< dynamic: somebody may be at it

@@ -10,6 +10,7 @@
 namespace stillmap {
 
 struct MaskExtensionConfig {
+  bool enabled = true;
   std::string variant = "connected";
   double mad_factor = 3.0;
   int whole_box_px = 5000;
@@ -27,6 +28,7 @@ struct MaskExtensionConfig {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
+    visit("enabled", self.enabled, FieldInfo{"extend the masks of what moves"});
     visit("variant",
           self.variant,
           FieldInfo{"how masks are extended: Fan 2020, or what hangs together in depth",

@@ -124,7 +124,7 @@ SequenceRun run_sequence(const TumSequence& sequence,
     ++done;
     if (options.on_progress) options.on_progress(done, frames.size());
   };
-  ObjectSource objects(options.segmenter, config.dynamics.tracker, FillRule::kBothWays);
+  ObjectSource objects(options.segmenter, config.dynamics.object_tracking(), FillRule::kBothWays);
   Stopwatch waiting;
   while (std::optional<SourcedFrame> next = source.next()) {
     add_stage_time(report.stages, "reading", waiting.lap_ms());

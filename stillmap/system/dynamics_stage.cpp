@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include <opencv2/imgproc.hpp>
@@ -12,13 +13,19 @@
 namespace stillmap {
 namespace {
 
-std::optional<DynamicObjects> make_objects(const DynamicsConfig& config,
-                                           const CameraModel& camera) {
-  if (config.mode == "off") return std::nullopt;
-  const DynamicsMode mode = config.mode == "mask"    ? DynamicsMode::kMask
-                            : config.mode == "paper" ? DynamicsMode::kPaper
-                                                     : DynamicsMode::kFull;
-  return DynamicObjects(config.objects, camera, mode);
+DynamicsMode mode_of(const DynamicsConfig& config) {
+  return config.mode == "mask"    ? DynamicsMode::kMask
+         : config.mode == "paper" ? DynamicsMode::kPaper
+                                  : DynamicsMode::kFull;
+}
+
+/// Where there is something dynamic.
+std::vector<PixelBox> dynamic_boxes(const std::vector<ObjectState>& states) {
+  std::vector<PixelBox> boxes;
+  for (const ObjectState& state : states) {
+    if (state.dynamic) boxes.push_back(state.box);
+  }
+  return boxes;
 }
 
 cv::Mat1b covered(const DynamicMask& mask) {
@@ -37,8 +44,19 @@ cv::Mat1b widened(const cv::Mat1b& mask, double margin_px) {
 
 }  // namespace
 
+ObjectTrackerConfig DynamicsConfig::object_tracking() const {
+  ObjectTrackerConfig tracking = tracker;
+  if (mode == "paper") tracking.min_sightings = 1;
+  if (!fill_boxes) tracking.search_frames = 0;
+  return tracking;
+}
+
 DynamicsStage::DynamicsStage(const DynamicsConfig& config, const CameraModel& camera)
-    : config_(config), objects_(make_objects(config, camera)), motions_(config.motion, camera) {}
+    : config_(config), motions_(config.motion, camera) {
+  if (config.mode == "off") return;
+  objects_.emplace(config.objects, camera, mode_of(config));
+  sifter_.emplace(config.features, camera, mode_of(config));
+}
 
 // The newest frame that is at least so old.
 const DynamicsStage::PastFrame* DynamicsStage::past_frame(std::int64_t frames_ago) const {
@@ -75,6 +93,25 @@ FrameDynamics DynamicsStage::judge(
   dynamics.objects = std::move(objects);
   dynamics.excluded = widened(covered(dynamics.judged.mask), config_.feature_margin_px);
   return dynamics;
+}
+
+SiftedFeatures DynamicsStage::sift(
+    const RgbdFrame& frame,
+    Features features,
+    const FrameDynamics& dynamics,
+    const std::optional<Eigen::Isometry3d>& T_world_camera_expected) {
+  STILLMAP_CHECK(enabled());
+  const FeaturesPtr current = std::make_shared<const Features>(std::move(features));
+  FeatureScene scene{*current,
+                     frame.depth,
+                     dynamic_boxes(dynamics.judged.states),
+                     std::exchange(features_, current),
+                     std::nullopt,
+                     frame.id};
+  if (T_world_camera_expected && last_) {
+    scene.T_current_previous = T_world_camera_expected->inverse() * last_->T_world_camera;
+  }
+  return sifter_->sift(scene);
 }
 
 void DynamicsStage::remember(const RgbdFrame& frame,

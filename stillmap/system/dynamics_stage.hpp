@@ -8,6 +8,7 @@
 
 #include "stillmap/core/rgbd_frame.hpp"
 #include "stillmap/dynamics/dynamic_objects.hpp"
+#include "stillmap/dynamics/feature_fates.hpp"
 #include "stillmap/dynamics/motion_state.hpp"
 #include "stillmap/dynamics/object_tracker.hpp"
 
@@ -17,9 +18,14 @@ struct DynamicsConfig {
   std::string mode = "full";
   double feature_margin_px = 4;
   int compare_frames = 15;
+  bool fill_boxes = true;
   DynamicObjectsConfig objects;
   ObjectTrackerConfig tracker;
   MotionStateConfig motion;
+  FeatureFatesConfig features;
+
+  /// How objects are followed in this mode.
+  [[nodiscard]] ObjectTrackerConfig object_tracking() const;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -35,9 +41,13 @@ struct DynamicsConfig {
                     "frames",
                     1,
                     60});
+    visit("fill_boxes",
+          self.fill_boxes,
+          FieldInfo{"take over what a network has missed from the frames before and after"});
     DynamicObjectsConfig::fields(self.objects, visit);
     visit.group("tracker", self.tracker);
     visit.group("motion", self.motion);
+    FeatureFatesConfig::fields(self.features, visit);
   }
 };
 
@@ -47,6 +57,8 @@ struct FrameDynamics {
   DynamicsResult judged;
   std::vector<ObjectMotion> motions;  ///< of `objects`, in their order; empty without a pose
   cv::Mat1b excluded;                 ///< not 0 where no feature may be
+  std::vector<FeatureFate> fates;     ///< of the frame's features, in their order
+  std::vector<FatedFeature> dropped;  ///< features that were found, but are not used
 };
 
 /// Says which pixels of each frame must not be taken for the static world, and remembers what it
@@ -64,6 +76,14 @@ class DynamicsStage {
       FrameObjects objects,
       const std::optional<Eigen::Isometry3d>& T_world_camera_expected) const;
 
+  /// Of the features off `dynamics.excluded`, those that may be used. The next frame's are compared
+  /// with all of them.
+  [[nodiscard]] SiftedFeatures sift(
+      const RgbdFrame& frame,
+      Features features,
+      const FrameDynamics& dynamics,
+      const std::optional<Eigen::Isometry3d>& T_world_camera_expected);
+
   /// The frame has a pose now: how its objects move; later frames are compared with it.
   void remember(const RgbdFrame& frame,
                 const Eigen::Isometry3d& T_world_camera,
@@ -73,6 +93,7 @@ class DynamicsStage {
   void forget() {
     last_.reset();
     past_.clear();
+    features_.reset();
   }
 
  private:
@@ -89,9 +110,11 @@ class DynamicsStage {
   DynamicsConfig config_;
   std::optional<DynamicObjects> objects_;
   MotionStates motions_;
+  std::optional<FeatureSifter> sifter_;
   std::optional<PastFrame> last_;
   std::deque<PastFrame> past_;  // some of those before, the newest last
   std::int64_t number_ = 0;     // of frames remembered
+  FeaturesPtr features_;        // of the last frame, as they were extracted
 };
 
 }  // namespace stillmap

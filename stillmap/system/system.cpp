@@ -41,13 +41,21 @@ FrameResult System::process(const FramePtr& frame, FrameObjects objects) {
   collect_clouds(frame_number_);
   result.stages.push_back({"mapping", stage.lap_ms()});
 
+  const std::optional<Eigen::Isometry3d> expected =
+      tracker_.expected_pose(frame->stamp.seconds, map_);
   if (dynamics_.enabled()) {
-    result.dynamics = dynamics_.judge(
-        *frame, std::move(objects), tracker_.expected_pose(frame->stamp.seconds, map_));
+    result.dynamics = dynamics_.judge(*frame, std::move(objects), expected);
     result.stages.push_back({"dynamics", stage.lap_ms()});
   }
   Features features = extractor_.extract(frame->gray, frame->depth, result.dynamics.excluded);
   result.stages.push_back({"features", stage.lap_ms()});
+  if (dynamics_.enabled()) {
+    SiftedFeatures sifted = dynamics_.sift(*frame, std::move(features), result.dynamics, expected);
+    features = std::move(sifted.features);
+    result.dynamics.fates = std::move(sifted.fates);
+    result.dynamics.dropped = std::move(sifted.dropped);
+    result.stages.push_back({"feature sifting", stage.lap_ms()});
+  }
 
   result.tracked = track(*frame, std::move(features));
   result.stages.push_back({"tracking", stage.lap_ms()});

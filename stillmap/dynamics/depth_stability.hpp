@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "stillmap/core/fields.hpp"
+#include "stillmap/core/images.hpp"
+
+namespace stillmap {
+
+enum class DepthStability : std::uint8_t {
+  kStable,
+  kMissing,   ///< a pixel of the 3x3 block has no depth, or the block leaves the image
+  kUnstable,  ///< the block spreads more than those of most features
+};
+
+struct DepthStabilityConfig {
+  bool enabled = true;
+  double mad_factor = 3.0;
+  bool relative = true;
+  std::string rejected = "depthless";
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("enabled", self.enabled, FieldInfo{"judge how steady the depth round a feature is"});
+    visit("mad_factor",
+          self.mad_factor,
+          FieldInfo{"a spread farther from the median, in scaled MADs, is unstable", "", 0.1, 100});
+    visit("relative",
+          self.relative,
+          FieldInfo{"full: compare spreads in terms of noise, which grows with depth squared"});
+    visit("rejected",
+          self.rejected,
+          FieldInfo{"full: what becomes of features of unstable depth; paper drops them, and those "
+                    "of missing depth",
+                    "",
+                    0,
+                    0,
+                    {"keep", "depthless", "drop"}});
+  }
+};
+
+/// Fan 2020, section III-E: how steady the depth round each feature is. Of the 3x3 pixels round it
+/// the standard deviation is taken; a feature is unstable whose deviation is more than `mad_factor`
+/// scaled MADs from the median of all features with depth. With `relative`, deviations are divided
+/// by depth squared before. `raw_px` are where the image has the features; a result for each.
+[[nodiscard]] std::vector<DepthStability> judge_depth_stability(
+    const DepthImage& depth,
+    std::span<const Eigen::Vector2f> raw_px,
+    const DepthStabilityConfig& config);
+
+}  // namespace stillmap

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "stillmap/core/camera.hpp"
+#include "stillmap/core/ids.hpp"
+#include "stillmap/core/images.hpp"
+#include "stillmap/core/trajectory.hpp"
+#include "stillmap/detections/detections.hpp"
+#include "stillmap/dynamics/depth_stability.hpp"
+#include "stillmap/dynamics/dynamic_objects.hpp"
+#include "stillmap/dynamics/static_matches.hpp"
+#include "stillmap/features/features.hpp"
+
+namespace stillmap {
+
+/// What a feature off the masks is taken for. Of several, the later in kDynamic, kUnstableDepth,
+/// kMissingDepth, kStaticInBox, kStable gives way to the earlier.
+enum class FeatureFate : std::uint8_t {
+  kStable,
+  kMissingDepth,
+  kUnstableDepth,
+  kDynamic,      ///< in the box of something dynamic, and not seen to stand still
+  kStaticInBox,  ///< in such a box, and seen to stand still
+};
+
+struct FatedFeature {
+  Eigen::Vector2f raw_px;
+  FeatureFate fate = FeatureFate::kStable;
+};
+
+/// The features that may tell the pose, and what has become of all.
+struct SiftedFeatures {
+  Features features;
+  std::vector<FeatureFate> fates;     ///< of `features`
+  std::vector<FatedFeature> dropped;  ///< of the others
+};
+
+/// The features of a frame, with what it takes to judge them.
+struct FeatureScene {
+  const Features& features;
+  const DepthImage& depth;
+  std::vector<PixelBox> dynamic_boxes;
+  FeaturesPtr previous;  ///< of the frame before, as they were extracted; may be null
+  std::optional<Eigen::Isometry3d> T_current_previous;  ///< as expected
+  FrameId frame;
+};
+
+struct FeatureFatesConfig {
+  DepthStabilityConfig depth_stability;
+  StaticMatchesConfig static_matches;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit.group("depth_stability", self.depth_stability);
+    visit.group("static_matches", self.static_matches);
+  }
+};
+
+/// Judges features by their depth and, in the boxes of what moves, by their motion: sections 6 and
+/// 7 of the method. kMask judges nothing; kPaper drops what is not proven, kFull only what is
+/// proven to move. Keeps nothing between frames; the same input gives the same bits.
+class FeatureSifter {
+ public:
+  FeatureSifter(const FeatureFatesConfig& config, const CameraModel& camera, DynamicsMode mode);
+
+  [[nodiscard]] SiftedFeatures sift(const FeatureScene& scene) const;
+
+ private:
+  [[nodiscard]] std::vector<FeatureFate> judge(const FeatureScene& scene) const;
+  [[nodiscard]] std::vector<std::optional<MatchVerdict>> judge_boxes(
+      const FeatureScene& scene, const std::vector<std::uint8_t>& boxed) const;
+  [[nodiscard]] FeatureFate in_box(const std::optional<MatchVerdict>& verdict) const;
+  [[nodiscard]] bool dropped(FeatureFate fate) const;
+  [[nodiscard]] bool without_depth(FeatureFate fate) const;
+
+  FeatureFatesConfig config_;
+  CameraModel camera_;
+  DynamicsMode mode_;
+};
+
+}  // namespace stillmap

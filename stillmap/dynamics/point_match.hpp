@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+
+namespace stillmap {
+
+/// The same point in two frames, at ideal pixels.
+struct PointMatch {
+  Eigen::Vector2d previous_px;
+  Eigen::Vector2d current_px;
+  double previous_depth_m = 0;  ///< 0 where unknown
+  double current_depth_m = 0;   ///< likewise
+};
+
+}  // namespace stillmap
