@@ -56,7 +56,8 @@ Scene scene_of(const std::vector<Thing>& things) {
 }
 
 FrameDynamics judged(const Scene& scene) {
-  const DynamicsConfig config{.mode = "full"};
+  DynamicsConfig config;
+  config.mode = "full";
   RgbdFrame frame;
   frame.depth = scene.depth;
   return DynamicsStage(config, synthetic_camera(320, 240))
