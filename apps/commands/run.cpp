@@ -118,7 +118,7 @@ int run(const RunArguments& arguments) {
   report.groundtruth = std::move(groundtruth);
   report.map = &run.result.map;
   evaluate(report);
-  write_run_folder(arguments.out, run.result, report);
+  write_run_folder(arguments.out, run.result, report, run.objects_jsonl);
   print_output(summary(arguments, report));
   return run.result.lost_at_end ? kLostForGood : 0;
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "stillmap/cloud/key_order.hpp"
+#include "stillmap/cloud/label_vote.hpp"
 #include "stillmap/core/error.hpp"
 
 // Not by VoxelGrid: as all points are known at once, sorting them by voxel takes half the time.
@@ -84,11 +85,18 @@ std::vector<IndexedKey> pixels_by_voxel(const cv::Mat1f& depth,
   return sorted_by_key(std::move(pixels));
 }
 
+constexpr std::uint32_t kMostVotes = 65535;  // what a LabelVote can count
+
 /// Sums over the pixels of one voxel.
 struct PointSum {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   std::array<std::uint32_t, 3> color{};
   std::uint32_t count = 0;
+  LabelVote labels;
+
+  void vote(std::uint8_t label) {
+    if (count <= kMostVotes) labels.add(label, 1);
+  }
 
   void add(const Eigen::Vector3f& p, const cv::Vec3b& rgb) {
     position += p.cast<double>();
@@ -116,17 +124,20 @@ std::size_t count_voxels(const std::vector<IndexedKey>& pixels) {
 PointCloud local_cloud(const RgbdFrame& frame,
                        const cv::Mat2f& rays,
                        const LocalCloudConfig& config,
-                       const cv::Mat1b& dynamic) {
+                       const cv::Mat1b& dynamic,
+                       const cv::Mat1b& labels) {
   const cv::Mat1f& depth = frame.depth.mat;
   const cv::Mat3b& color = frame.color.mat;
   STILLMAP_CHECK(depth.size() == rays.size() && color.size() == rays.size());
   STILLMAP_CHECK(dynamic.empty() || dynamic.size() == rays.size());
+  STILLMAP_CHECK(labels.empty() || labels.size() == rays.size());
   STILLMAP_CHECK(config.voxel_size_m > 0);
   const std::vector<IndexedKey> pixels = pixels_by_voxel(depth, rays, config, dynamic);
   const std::size_t voxels = count_voxels(pixels);
   PointCloud cloud;
   cloud.positions.reserve(voxels);
   cloud.colors.reserve(voxels);
+  if (!labels.empty()) cloud.labels.reserve(voxels);
   for (std::size_t i = 0; i < pixels.size();) {
     const std::uint64_t key = pixels[i].key;
     PointSum sum;
@@ -134,8 +145,10 @@ PointCloud local_cloud(const RgbdFrame& frame,
       const int row = static_cast<int>(pixels[i].index) / depth.cols;
       const int x = static_cast<int>(pixels[i].index) % depth.cols;
       sum.add(point_of(rays(row, x), depth(row, x)), color(row, x));
+      if (!labels.empty()) sum.vote(labels(row, x));
     }
     sum.append_mean_to(cloud);
+    if (!labels.empty()) cloud.labels.push_back(sum.labels.winner());
   }
   return cloud;
 }

@@ -25,8 +25,7 @@ struct LocalCloudConfig {
   }
 };
 
-/// The surface that a key frame sees, as points in its own camera's coordinates (metres), without
-/// labels.
+/// The surface that a key frame sees, as points in its own camera's coordinates (metres).
 ///
 /// They stay in these coordinates for good: a later correction of the key frame's pose, by bundle
 /// adjustment or a closed loop, then costs nothing, as the pose is applied when the map is
@@ -35,10 +34,13 @@ struct LocalCloudConfig {
 /// Pixels without depth (0, negative, not finite), with depth over `max_depth_m` or where
 /// `dynamic`, which may be empty, is not 0 are left out. The rest is thinned to one mean point a
 /// voxel, which bounds what a key frame keeps in memory by the surface it sees. `rays` are the
-/// camera's pixel_rays(), of the frame's size. Takes time linear in the number of pixels.
+/// camera's pixel_rays(), of the frame's size. A point's label is that of most of its pixels in
+/// `labels`; without such an image the cloud has no labels. Takes time linear in the number of
+/// pixels.
 [[nodiscard]] PointCloud local_cloud(const RgbdFrame& frame,
                                      const cv::Mat2f& rays,
                                      const LocalCloudConfig& config,
-                                     const cv::Mat1b& dynamic = {});
+                                     const cv::Mat1b& dynamic = {},
+                                     const cv::Mat1b& labels = {});
 
 }  // namespace stillmap

@@ -141,5 +141,47 @@ TEST(LocalCloud, RefusesRaysOfAnotherSize) {
   EXPECT_THROW((void)local_cloud(frame_of(camera, 1.0F), cv::Mat2f(48, 63), {}), InternalError);
 }
 
+TEST(LocalCloud, LabelsAreThoseOfMostPixelsOfAPoint) {
+  const CameraModel camera = small_camera();
+  const RgbdFrame frame = frame_of(camera, 1.0F);
+  const cv::Mat2f rays = pixel_rays(camera);
+  // At 1 m a pixel is 2 cm wide: voxels of 10 cm hold 5 by 5 of them; the optical axis is between
+  // columns 31 and 32, so that columns 32 to 36 share a voxel, and so on.
+  cv::Mat1b labels(camera.height_px, camera.width_px, std::uint8_t{0});
+  labels(cv::Rect(32, 24, 2, 5)).setTo(57);  // 10 of 25
+  labels(cv::Rect(37, 24, 3, 5)).setTo(63);  // 15 of 25
+  const LocalCloudConfig config{.max_depth_m = 6, .voxel_size_m = 0.1};
+  const PointCloud cloud = local_cloud(frame, rays, config, {}, labels);
+  ASSERT_EQ(cloud.labels.size(), cloud.size());
+  int labelled = 0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Eigen::Vector3f p = cloud.positions[i];
+    const bool expected = p.x() > 0.1F && p.x() < 0.2F && p.y() > 0 && p.y() < 0.1F;
+    EXPECT_EQ(cloud.labels[i], expected ? 63 : 0) << p.transpose();
+    labelled += expected ? 1 : 0;
+  }
+  EXPECT_EQ(labelled, 1);
+  // Labels change nothing else.
+  const PointCloud plain = local_cloud(frame, rays, config);
+  EXPECT_EQ(cloud.positions, plain.positions);
+  EXPECT_EQ(cloud.colors, plain.colors);
+}
+
+TEST(LocalCloud, AVoxelOfMorePixelsThanVotesHasALabel) {
+  CameraModel camera;
+  camera.width_px = 640;
+  camera.height_px = 480;
+  camera.fx = camera.fy = 1e5;  // all rays nearly parallel
+  camera.cx = camera.cy = -10;
+  RgbdFrame frame;
+  frame.depth = DepthImage(cv::Mat1f(480, 640, 1.5F));
+  frame.color = ColorImage(cv::Mat3b(480, 640, cv::Vec3b(1, 2, 3)));
+  const cv::Mat1b labels(480, 640, std::uint8_t{57});
+  const LocalCloudConfig config{.max_depth_m = 6, .voxel_size_m = 1};
+  const PointCloud cloud = local_cloud(frame, pixel_rays(camera), config, {}, labels);
+  ASSERT_EQ(cloud.size(), 1U);
+  EXPECT_EQ(cloud.labels[0], 57);
+}
+
 }  // namespace
 }  // namespace stillmap

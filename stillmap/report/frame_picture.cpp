@@ -2,54 +2,87 @@
 #include "stillmap/report/frame_picture.hpp"
 
 #include <algorithm>
-#include <span>
+#include <array>
+#include <vector>
 
 #include <opencv2/imgproc.hpp>
 
 namespace stillmap {
 namespace {
 
-struct RingStyle {
-  int radius_px;
-  cv::Scalar color;
-};
+constexpr std::array<FateStyle, 2> kStyles = {
+    {{SampleFate::kUntracked, "found but not tracked", 2, {165, 165, 165}},
+     {SampleFate::kTracked, "tracked", 3, {40, 255, 110}}}};
 
-void draw_rings(cv::Mat3b& picture,
-                std::span<const Eigen::Vector2f> centers,
-                const RingStyle& style) {
-  constexpr int kShift = 4;  // centres in sixteenths of a pixel
-  const cv::Rect2f inside(0, 0, static_cast<float>(picture.cols), static_cast<float>(picture.rows));
-  for (const Eigen::Vector2f& center : centers) {
-    if (!center.allFinite() || !inside.contains({center.x(), center.y()})) continue;
-    const cv::Point at(cvRound(center.x() * 16), cvRound(center.y() * 16));
-    cv::circle(picture, at, style.radius_px * 16, style.color, 1, cv::LINE_AA, kShift);
-  }
+cv::Scalar scalar(Rgb color) {
+  return {
+      static_cast<double>(color[0]), static_cast<double>(color[1]), static_cast<double>(color[2])};
 }
 
-std::vector<Eigen::Vector2f> scaled(const std::vector<Eigen::Vector2f>& points, float scale) {
-  std::vector<Eigen::Vector2f> out(points.size());
-  std::transform(points.begin(), points.end(), out.begin(), [scale](const Eigen::Vector2f& p) {
-    return Eigen::Vector2f(p * scale);
-  });
+ColorImage resized(const ColorImage& image, int max_width_px) {
+  if (image.mat.cols <= max_width_px) return ColorImage(image.mat.clone());
+  const double scale = static_cast<double>(max_width_px) / image.mat.cols;
+  cv::Mat3b small;
+  const cv::Size size(max_width_px, std::max(1, cvRound(image.mat.rows * scale)));
+  cv::resize(image.mat, small, size, 0, 0, cv::INTER_AREA);
+  return ColorImage(small);
+}
+
+/// The mask in the picture's size, 255 where it is not 0; empty where it does not fit the image.
+cv::Mat1b fitted(const cv::Mat1b& mask, cv::Size image, cv::Size picture) {
+  cv::Mat1b out;
+  if (mask.empty() || mask.size() != image) return out;
+  cv::resize(mask != 0, out, picture, 0, 0, cv::INTER_NEAREST);
   return out;
+}
+
+void tint(cv::Mat3b& picture, const cv::Mat1b& mask, Rgb color, double share) {
+  if (mask.empty()) return;
+  cv::Mat3b tinted;
+  const cv::Mat3b plain(picture.size(), cv::Vec3b(color[0], color[1], color[2]));
+  cv::addWeighted(picture, 1 - share, plain, share, 0, tinted);
+  tinted.copyTo(picture, mask);
+}
+
+void outline(cv::Mat3b& picture, const cv::Mat1b& mask, Rgb color) {
+  if (mask.empty()) return;
+  std::vector<std::vector<cv::Point>> contours;
+  cv::findContours(mask, contours, cv::RETR_LIST, cv::CHAIN_APPROX_NONE);
+  cv::drawContours(picture, contours, -1, scalar(color), 1, cv::LINE_AA);
+}
+
+void draw_ring(cv::Mat3b& picture, const Eigen::Vector2f& center, const FateStyle& style) {
+  constexpr int kShift = 4;  // centres in sixteenths of a pixel
+  const cv::Rect2f inside(0, 0, static_cast<float>(picture.cols), static_cast<float>(picture.rows));
+  if (!center.allFinite() || !inside.contains({center.x(), center.y()})) return;
+  const cv::Point at(cvRound(center.x() * 16), cvRound(center.y() * 16));
+  cv::circle(picture, at, style.radius_px * 16, scalar(style.color), 1, cv::LINE_AA, kShift);
 }
 
 }  // namespace
 
-ColorImage draw_features(const SampleFrame& frame, int max_width_px) {
-  if (frame.image.mat.empty()) return {};
-  cv::Mat3b picture;
-  float scale = 1;
-  if (frame.image.mat.cols > max_width_px) {
-    scale = static_cast<float>(max_width_px) / static_cast<float>(frame.image.mat.cols);
-    const int height = std::max(1, cvRound(static_cast<float>(frame.image.mat.rows) * scale));
-    cv::resize(frame.image.mat, picture, {max_width_px, height}, 0, 0, cv::INTER_AREA);
-  } else {
-    picture = frame.image.mat.clone();
+std::span<const FateStyle> fate_styles() {
+  return kStyles;
+}
+
+ColorImage draw_frame(const SampleFrame& frame, int max_width_px) {
+  const cv::Mat3b& image = frame.image.mat;
+  if (image.empty()) return {};
+  ColorImage drawn = resized(frame.image, max_width_px);
+  cv::Mat3b& picture = drawn.mat;
+  const auto fit = [&](const cv::Mat1b& mask) {
+    return fitted(mask, image.size(), picture.size());
+  };
+  tint(picture, fit(frame.extended_mask), MaskStyle::kExtended, 0.4);
+  tint(picture, fit(frame.jumps), MaskStyle::kJumps, 0.6);
+  outline(picture, fit(frame.raw_mask), MaskStyle::kRaw);
+  const float scale = static_cast<float>(picture.cols) / static_cast<float>(image.cols);
+  for (const FateStyle& style : kStyles) {
+    for (const SampleFeature& feature : frame.features) {
+      if (feature.fate == style.fate) draw_ring(picture, feature.raw_px * scale, style);
+    }
   }
-  draw_rings(picture, scaled(frame.untracked_px, scale), {2, {165, 165, 165}});
-  draw_rings(picture, scaled(frame.tracked_px, scale), {3, {40, 255, 110}});
-  return ColorImage(picture);
+  return drawn;
 }
 
 }  // namespace stillmap

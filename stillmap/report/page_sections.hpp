@@ -28,6 +28,7 @@ struct RunStatus {
 [[nodiscard]] std::string timing_html(const RunReport& report);
 [[nodiscard]] std::string features_html(const RunReport& report);
 
+[[nodiscard]] std::string objects_html(const RunReport& report);
 [[nodiscard]] std::string samples_html(const RunReport& report);
 
 struct MapHtml {

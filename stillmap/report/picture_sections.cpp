@@ -1,35 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "stillmap/io/image_io.hpp"
 #include "stillmap/report/display_text.hpp"
-#include "stillmap/report/frame_picture.hpp"
 #include "stillmap/report/map_picture.hpp"
 #include "stillmap/report/map_view_data.hpp"
 #include "stillmap/report/page_assets.hpp"
 #include "stillmap/report/page_sections.hpp"
-#include "stillmap/report/page_text.hpp"
+#include "stillmap/report/picture_html.hpp"
 #include "stillmap/report/scene_frame.hpp"
 
 namespace stillmap {
 namespace {
-
-std::string figure_html(const ColorImage& picture,
-                        const std::string& alt,
-                        const std::string& caption) {
-  constexpr int kJpegQuality = 82;
-  const std::vector<std::uint8_t> jpeg = encode_jpeg(picture, kJpegQuality);
-  return fmt::format(
-      "<figure><img src=\"data:image/jpeg;base64,{}\" width=\"{}\" height=\"{}\" alt=\"{}\">"
-      "<figcaption>{}</figcaption></figure>",
-      base64(jpeg),
-      picture.mat.cols,
-      picture.mat.rows,
-      html_escape(alt),
-      caption);
-}
 
 ColorImage map_picture(const RunReport& report, const View& view) {
   constexpr Rgb kPathColor = {225, 107, 0};
@@ -86,25 +70,6 @@ MapHtml map_html(const RunReport& report) {
       map_view_json(*report.map, scene, report.estimate, report.keyframes),
       map_view_js());
   return html;
-}
-
-std::string samples_html(const RunReport& report) {
-  constexpr int kWidth_px = 640;
-  std::string figures;
-  const double start = first_stamp_s(report);
-  for (const SampleFrame& frame : report.samples) {
-    const ColorImage picture = draw_features(frame, kWidth_px);
-    if (picture.mat.empty()) continue;
-    const std::string caption = fmt::format("{:.2f} s: {} tracked, {} not",
-                                            frame.stamp.seconds - start,
-                                            count_text(frame.tracked_px.size()),
-                                            count_text(frame.untracked_px.size()));
-    figures += figure_html(picture, "Frame " + frame.stamp.text, caption);
-  }
-  if (figures.empty()) return "<p>No sample frames were kept.</p>";
-  return "<p class=\"note\">Features: <span class=\"ring tracked\"></span>tracked "
-         "<span class=\"ring other\"></span>found but not tracked</p><div class=\"samples\">" +
-         figures + "</div>";
 }
 
 }  // namespace stillmap

@@ -26,6 +26,7 @@ std::string report_html(const RunReport& report) {
       {"error", error_html(report)},
       {"timing", timing_html(report)},
       {"features", features_html(report)},
+      {"objects", objects_html(report)},
       {"samples", samples_html(report)},
       {"details", details_html(report)},
       {"script", map.script}};

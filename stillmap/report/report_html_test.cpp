@@ -67,9 +67,31 @@ RunReport full_report(const PointCloud& map) {
   SampleFrame sample;
   sample.stamp = {100.5, "100.500000"};
   sample.image = ColorImage(cv::Mat3b(48, 64, cv::Vec3b(40, 60, 80)));
-  sample.tracked_px = {{10, 10}, {30, 20}};
-  sample.untracked_px = {{50, 40}};
+  sample.features = {{{10, 10}, SampleFate::kTracked},
+                     {{30, 20}, SampleFate::kTracked},
+                     {{50, 40}, SampleFate::kUntracked}};
+  SampleObject person;
+  person.track = 3;
+  person.class_name = "person";
+  person.reason = "dynamic class";
+  person.dynamic = true;
+  person.box_px = {Eigen::Vector2d(5, 6), Eigen::Vector2d(25, 40)};
+  sample.objects = {person};
+  sample.raw_mask = cv::Mat1b(48, 64, std::uint8_t{0});
+  sample.raw_mask(cv::Rect(8, 8, 10, 10)).setTo(1);
+  sample.extended_mask = sample.raw_mask.clone();
   report.samples = {sample};
+  report.dynamics_mode = "full";
+  ObjectSummary chair;
+  chair.track = 4;
+  chair.class_name = "chair";
+  chair.category = "potentially dynamic";
+  chair.frames = 40;
+  chair.filled = 3;
+  chair.dynamic = 10;
+  chair.main_reason = "nobody near";
+  chair.motions = {{"unknown", 2}, {"still", 28}, {"moved by someone", 10}};
+  report.objects = {chair};
   report.map = &map;
   report.warnings = {"depth is sparse"};
   return report;
@@ -117,23 +139,34 @@ TEST(ReportHtml, shows_all_that_is_known) {
   const PointCloud map = wall();
   const std::string page = report_html(full_report(map));
   EXPECT_EQ(first_fault(page), "");
-  for (const char* const part : {"<title>office - stillmap</title>",
-                                 "9.8.7",
-                                 "2 frames not tracked, 1 of them unreadable",
-                                 "60 of 62",
-                                 "96.7\u00A0%",
-                                 "1,200",
-                                 "250\u00A0MB",
-                                 "20.0\u00A0ms",
-                                 "ground truth",
-                                 "key frames",
-                                 "depth is sparse",
-                                 "101.05: rgb/a.png: too short",
-                                 "seed: 1",
-                                 "id=\"map-data\"",
-                                 "2 tracked, 1 not",
-                                 "<td>31.0\u00A0ms</td>"}) {
+  for (const char* const part :
+       {"<title>office - stillmap</title>",
+        "9.8.7",
+        "2 frames not tracked, 1 of them unreadable",
+        "60 of 62",
+        "96.7\u00A0%",
+        "1,200",
+        "250\u00A0MB",
+        "20.0\u00A0ms",
+        "ground truth",
+        "key frames",
+        "depth is sparse",
+        "101.05: rgb/a.png: too short",
+        "seed: 1",
+        "id=\"map-data\"",
+        "2 tracked, 1 found but not tracked",
+        "person #3: dynamic class",
+        "the network's mask",
+        "extended mask",
+        "<td>#4 chair</td><td>potentially dynamic</td><td>40</td><td>3</td>"
+        "<td>25.0\u00A0%</td><td>nobody near</td><td>still 70.0\u00A0%, moved "
+        "by someone 25.0\u00A0%</td>",
+        "<td>31.0\u00A0ms</td>"}) {
     EXPECT_THAT(page, HasSubstr(part));
+  }
+  // The legend names what is there, and no more.
+  for (const char* const part : {"static object", "sudden change", "filled in</span>"}) {
+    EXPECT_THAT(page, Not(HasSubstr(part)));
   }
 }
 
@@ -163,6 +196,12 @@ TEST(ReportHtml, every_text_is_escaped) {
   report.lost.at(0).text = evil;
   report.stages.at(0).name = evil;
   report.samples.at(0).stamp.text = evil;
+  report.samples.at(0).objects.at(0).class_name = evil;
+  report.samples.at(0).objects.at(0).reason = evil;
+  report.dynamics_mode = evil;
+  ObjectSummary& object = report.objects->at(0);
+  object.class_name = object.category = object.main_reason = evil;
+  object.motions.at(1).motion = evil;
   const std::string page = report_html(report);
   EXPECT_EQ(first_fault(page), "");
   EXPECT_THAT(page, Not(HasSubstr("<script>alert")));
@@ -181,6 +220,7 @@ TEST(ReportHtml, of_nothing_says_so_in_each_section) {
                                  "No stage was timed",
                                  "No frame was timed",
                                  "No counts of features",
+                                 "Everything was taken as static",
                                  "No sample frames"}) {
     EXPECT_THAT(page, HasSubstr(part));
   }
@@ -219,6 +259,19 @@ TEST(ReportHtml, of_one_pose_without_ground_truth) {
   EXPECT_THAT(page, HasSubstr("There is no ground truth to compare with"));
   EXPECT_THAT(page, Not(HasSubstr("nothing to show")));
   EXPECT_THAT(page, Not(HasSubstr(">nan")));
+}
+
+TEST(ReportHtml, says_why_there_are_no_objects) {
+  RunReport report;
+  report.dynamics_mode = "full";
+  EXPECT_THAT(report_html(report), HasSubstr("No network looked for objects"));
+  report.objects.emplace();
+  EXPECT_THAT(report_html(report), HasSubstr("No objects were found"));
+  report.objects->resize(50);
+  report.objects->at(49).frames = 9;
+  const std::string page = report_html(report);
+  EXPECT_THAT(page, HasSubstr("and 10 more"));
+  EXPECT_EQ(first_fault(page), "");
 }
 
 TEST(ReportHtml, long_lists_are_cut) {

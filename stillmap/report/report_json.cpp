@@ -84,6 +84,45 @@ Json map_json(const PointCloud* map) {
           {"bounds_max", {high.x(), high.y(), high.z()}}};
 }
 
+/// Sums over objects of some kind; a sighting is an object in a frame.
+struct ObjectCounts {
+  std::size_t tracks = 0, sightings = 0, filled = 0, dynamic = 0;
+
+  void add(const ObjectSummary& object) {
+    ++tracks;
+    sightings += object.frames;
+    filled += object.filled;
+    dynamic += object.dynamic;
+  }
+  [[nodiscard]] Json json() const {
+    return {{"tracks", tracks}, {"sightings", sightings}, {"filled", filled}, {"dynamic", dynamic}};
+  }
+};
+
+Json objects_json(const std::optional<std::vector<ObjectSummary>>& objects) {
+  if (!objects) {
+    return {{"tracks", nullptr},
+            {"sightings", nullptr},
+            {"filled", nullptr},
+            {"dynamic", nullptr},
+            {"classes", Json::object()}};
+  }
+  ObjectCounts all;
+  std::map<std::string, ObjectCounts> classes;
+  for (const ObjectSummary& object : *objects) {
+    all.add(object);
+    classes[object.class_name].add(object);
+  }
+  Json json = all.json();
+  json["classes"] = Json::object();
+  for (const auto& [name, counts] : classes) json["classes"][name] = counts.json();
+  return json;
+}
+
+Json text_or_null(const std::string& text) {
+  return text.empty() ? Json() : Json(text);
+}
+
 }  // namespace
 
 std::string report_json(const RunReport& report) {
@@ -97,6 +136,8 @@ std::string report_json(const RunReport& report) {
                      {"ate", ate_json(report.ate)},
                      {"rpe", rpe_json(report.rpe)},
                      {"map", map_json(report.map)},
+                     {"dynamics", {{"mode", text_or_null(report.dynamics_mode)}}},
+                     {"objects", objects_json(report.objects)},
                      {"warnings", report.warnings}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }

@@ -122,13 +122,44 @@ TEST(ReportJson, unknown_figures_are_null) {
                            "/rpe/pairs",
                            "/rpe/trans/rmse",
                            "/rpe/rot_deg/rmse",
-                           "/map/points"}) {
+                           "/map/points",
+                           "/dynamics/mode",
+                           "/objects/tracks",
+                           "/objects/sightings",
+                           "/objects/filled",
+                           "/objects/dynamic"}) {
     EXPECT_TRUE(j.at(json::json_pointer(path)).is_null()) << path;
   }
   EXPECT_EQ(j.at("frames").at("total"), 0);
   EXPECT_EQ(j.at("keyframes"), 0);
   EXPECT_TRUE(j.at("time").at("stages_ms").empty());
   EXPECT_TRUE(j.at("warnings").empty());
+}
+
+ObjectSummary object_of(const char* class_name, std::size_t frames, std::size_t dynamic) {
+  ObjectSummary object;
+  object.class_name = class_name;
+  object.frames = frames;
+  object.filled = 1;
+  object.dynamic = dynamic;
+  return object;
+}
+
+TEST(ReportJson, counts_objects_by_class) {
+  RunReport report;
+  report.dynamics_mode = "full";
+  report.objects = {
+      object_of("person", 10, 10), object_of("chair", 7, 2), object_of("chair", 4, 0)};
+  const json j = json::parse(report_json(report));
+  EXPECT_EQ(j.at("dynamics"), (json{{"mode", "full"}}));
+  const json chairs = {{"tracks", 2}, {"sightings", 11}, {"filled", 2}, {"dynamic", 2}};
+  const json people = {{"tracks", 1}, {"sightings", 10}, {"filled", 1}, {"dynamic", 10}};
+  EXPECT_EQ(j.at("objects"),
+            (json{{"tracks", 3},
+                  {"sightings", 21},
+                  {"filled", 3},
+                  {"dynamic", 12},
+                  {"classes", {{"chair", chairs}, {"person", people}}}}));
 }
 
 TEST(ReportJson, an_empty_map_has_no_bounds) {

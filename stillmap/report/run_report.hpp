@@ -2,11 +2,14 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <opencv2/core/mat.hpp>
 
 #include "stillmap/core/camera.hpp"
 #include "stillmap/core/images.hpp"
@@ -29,12 +32,53 @@ struct StageTimes {
   std::vector<double> ms;
 };
 
-/// A frame shown in the report, with its features at raw pixels.
+/// What became of a feature.
+enum class SampleFate : std::uint8_t {
+  kUntracked,  ///< found, but not matched
+  kTracked,    ///< matched to the map
+};
+
+struct SampleFeature {
+  Eigen::Vector2f raw_px;
+  SampleFate fate = SampleFate::kUntracked;
+};
+
+/// Something that a network has found in a frame, or has missed there.
+struct SampleObject {
+  std::uint32_t track = 0;  ///< its number
+  std::string class_name;
+  std::string reason;  ///< why it is taken as dynamic or static
+  bool dynamic = false;
+  bool filled = false;         ///< the network has missed it
+  Eigen::AlignedBox2d box_px;  ///< may reach beyond the image
+};
+
+/// A frame shown in the report, all of it in raw pixels. The masks are as large as the image or
+/// empty.
 struct SampleFrame {
   Stamp stamp;
   ColorImage image;
-  std::vector<Eigen::Vector2f> tracked_px;    ///< matched to the map
-  std::vector<Eigen::Vector2f> untracked_px;  ///< found, but not matched
+  std::vector<SampleFeature> features;
+  std::vector<SampleObject> objects;
+  cv::Mat1b raw_mask;       ///< not 0 where the network has something dynamic
+  cv::Mat1b extended_mask;  ///< the same after its extension
+  cv::Mat1b jumps;          ///< not 0 where depth has changed suddenly
+};
+
+/// What is said of something that a network has found, over all frames that have it.
+struct ObjectSummary {
+  struct MotionCount {
+    std::string motion;
+    std::size_t frames = 0;
+  };
+  std::uint32_t track = 0;  ///< its number
+  std::string class_name;
+  std::string category;
+  std::size_t frames = 0;            ///< in which it is
+  std::size_t filled = 0;            ///< of these, in which the network has missed it
+  std::size_t dynamic = 0;           ///< of these, in which it was taken as dynamic
+  std::string main_reason;           ///< why it was taken as what it was, most often
+  std::vector<MotionCount> motions;  ///< how it moved in how many frames
 };
 
 /// All that the reports of a run say. A plain value: whoever ran the run fills it. What is not
@@ -61,6 +105,10 @@ struct RunReport {
   std::vector<StageTimes> stages;     ///< in the order in which they run
   std::vector<int> tracked_features;  ///< of each frame, in order
   std::optional<double> peak_memory_mb;
+
+  std::string dynamics_mode;  ///< what was done about what moves
+  /// In the order of their numbers; nullopt when nothing looked for objects.
+  std::optional<std::vector<ObjectSummary>> objects;
 
   std::vector<SampleFrame> samples;  ///< about eight, in order
   const PointCloud* map = nullptr;   ///< not owned, outlives the report; nullptr when none was made

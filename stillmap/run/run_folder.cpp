@@ -25,10 +25,17 @@ void prepare_run_folder(const std::filesystem::path& folder) {
 
 void write_run_folder(const std::filesystem::path& folder,
                       const RunResult& result,
-                      const RunReport& report) {
+                      const RunReport& report,
+                      const std::optional<std::string>& objects_jsonl) {
   write_file_atomically(folder / "trajectory.txt", format_trajectory(result.trajectory));
   write_file_atomically(folder / "keyframes.txt", format_trajectory(result.keyframes));
   write_file_atomically(folder / "config.yaml", report.config_yaml);
+  if (objects_jsonl) {
+    write_file_atomically(folder / "objects.jsonl", *objects_jsonl);
+  } else {
+    std::error_code ignored;
+    std::filesystem::remove(folder / "objects.jsonl", ignored);
+  }
   write_file_atomically(folder / "map.ply", encode_ply(result.map));
   write_file_atomically(folder / "report.json", report_json(report));
   write_file_atomically(folder / "report.html", report_html(report));

@@ -8,6 +8,7 @@
 
 #include "stillmap/core/error.hpp"
 #include "stillmap/run/frame_source.hpp"
+#include "stillmap/run/object_log.hpp"
 #include "stillmap/run/object_source.hpp"
 #include "stillmap/system/stopwatch.hpp"
 
@@ -38,12 +39,35 @@ double peak_memory_mb() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-SampleFrame make_sample(const RgbdFrame& frame, const TrackedFrame& tracked) {
-  SampleFrame sample{frame.stamp, frame.color, {}, {}};
+SampleObject make_sample_object(const TrackedObject& object, const ObjectState& state) {
+  const PixelBox& box = state.box;
+  return {.track = state.track.value,
+          .class_name = object.detection.class_name,
+          .reason = std::string(reason_name(state.reason)),
+          .dynamic = state.dynamic,
+          .filled = state.filled,
+          .box_px = Eigen::AlignedBox2d(Eigen::Vector2d(box.x0, box.y0),
+                                        Eigen::Vector2d(box.x1, box.y1))};
+}
+
+SampleFrame make_sample(const RgbdFrame& frame, const FrameResult& result) {
+  SampleFrame sample;
+  sample.stamp = frame.stamp;
+  sample.image = frame.color;
+  const TrackedFrame& tracked = result.tracked;
   for (std::size_t i = 0; i < tracked.landmarks.size(); ++i) {
-    auto& list = tracked.landmarks[i].valid() ? sample.tracked_px : sample.untracked_px;
-    list.push_back(tracked.features->raw_px[i]);
+    sample.features.push_back(
+        {tracked.features->raw_px[i],
+         tracked.landmarks[i].valid() ? SampleFate::kTracked : SampleFate::kUntracked});
   }
+  const FrameDynamics& dynamics = result.dynamics;
+  for (std::size_t i = 0; i < dynamics.judged.states.size(); ++i) {
+    sample.objects.push_back(
+        make_sample_object(dynamics.objects.objects[i], dynamics.judged.states[i]));
+  }
+  sample.raw_mask = dynamics.judged.mask.raw;
+  sample.extended_mask = dynamics.judged.mask.extended;
+  sample.jumps = dynamics.judged.mask.jumps;
   return sample;
 }
 
@@ -114,12 +138,17 @@ SequenceRun run_sequence(const TumSequence& sequence,
   report.sequence = sequence.name();
   report.frames_total = frames.size();
 
+  report.dynamics_mode = config.dynamics.mode;
+  const bool with_objects = options.segmenter != nullptr && config.dynamics.mode != "off";
+
+  std::vector<LoggedFrame> log;
   std::size_t done = 0;
   const auto process = [&](FrameWithObjects ready) {
     const FrameResult result = system.process(ready.frame, std::move(ready.objects));
     add_frame(report, *ready.frame, result);
+    if (with_objects) log.push_back(log_frame(ready.frame->stamp, result));
     if (done * kSamples / frames.size() != (done + 1) * kSamples / frames.size()) {
-      report.samples.push_back(make_sample(*ready.frame, result.tracked));
+      report.samples.push_back(make_sample(*ready.frame, result));
     }
     ++done;
     if (options.on_progress) options.on_progress(done, frames.size());
@@ -142,6 +171,10 @@ SequenceRun run_sequence(const TumSequence& sequence,
   }
   for (FrameWithObjects& frame : objects.flush()) process(std::move(frame));
   run.result = system.finish();
+  if (with_objects) {
+    run.objects_jsonl = objects_jsonl(log, run.result.trajectory);
+    report.objects = summarize_objects(log);
+  }
   report.camera = sequence.camera();
   report.camera.readout_s = system.readout_s();
   report.frames_tracked = run.result.trajectory.size();

@@ -36,6 +36,9 @@ struct SequenceRun {
   /// All that the run itself knows; `map` is not set. What concerns ground truth, configuration and
   /// version is the caller's.
   RunReport report;
+  /// What objects.jsonl says; nullopt when nothing looked for objects or nothing is done about
+  /// them.
+  std::optional<std::string> objects_jsonl;
 };
 
 /// Runs the system over a sequence. A damaged image inside a long sequence costs its frame, with a

@@ -7,6 +7,7 @@
 #include "stillmap/cloud/local_cloud.hpp"
 #include "stillmap/core/error.hpp"
 #include "stillmap/mapping/map_adjustment.hpp"
+#include "stillmap/system/label_image.hpp"
 #include "stillmap/system/stopwatch.hpp"
 
 namespace stillmap {
@@ -134,10 +135,13 @@ KeyframeId System::insert_keyframe(const FramePtr& frame, const FrameResult& res
         return map_locally(std::move(*window), core, camera_, measure_, config_.mapping);
       });
   const cv::Mat1b dynamic = result.dynamics.excluded;
-  cloud_jobs_.submit(frame_number_ + config_.mapping.lag_frames, [frame, dynamic, id, this] {
-    return std::pair(
-        id, std::make_shared<const PointCloud>(local_cloud(*frame, rays_, config_.cloud, dynamic)));
-  });
+  const cv::Mat1b labels = label_image(frame->depth, result.dynamics);
+  cloud_jobs_.submit(
+      frame_number_ + config_.mapping.lag_frames, [frame, dynamic, labels, id, this] {
+        return std::pair(id,
+                         std::make_shared<const PointCloud>(
+                             local_cloud(*frame, rays_, config_.cloud, dynamic, labels)));
+      });
   return id;
 }
 

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "stillmap/core/images.hpp"
+
+namespace stillmap {
+
+/// A picture as HTML that holds it. `alt` is plain text, `caption` HTML; `overlay` is an SVG, of
+/// the picture's proportions, that lies over it, or empty.
+[[nodiscard]] std::string figure_html(const ColorImage& picture,
+                                      const std::string& alt,
+                                      const std::string& caption,
+                                      const std::string& overlay = "");
+
+}  // namespace stillmap

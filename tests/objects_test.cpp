@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `stillmap run` tells of objects: objects.jsonl, the map's labels, the report.
+#include <sstream>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "stillmap/io/image_io.hpp"
+#include "stillmap/io/ply.hpp"
+#include "tests/cli_fixture.hpp"
+#include "tests/plane_sequence.hpp"
+
+namespace stillmap {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+class Objects : public Cli {
+ protected:
+  static constexpr int kFrames = 30;
+
+  // The wall, and a folder in which a part of it is called a person and another a chair, far from
+  // each other. The camera slides, so the parts do, a little; one frame has missed the chair.
+  Objects() {
+    write_plane_sequence(folder_ / "wall", kFrames);
+    std::filesystem::create_directories(folder_ / "found" / "masks");
+    cv::Mat1b mask(240, 320, std::uint8_t{0});
+    mask(cv::Rect(10, 10, 60, 100)).setTo(1);
+    mask(cv::Rect(230, 150, 70, 70)).setTo(2);
+    std::string lines;
+    for (int i = 0; i < kFrames; ++i) {
+      const std::string stamp = fmt::format("{:.6f}", 100 + i / 30.0);
+      lines += R"({"stamp":")" + stamp +
+               R"(","objects":[{"id":1,"class":"person","score":0.9,"box":[10,10,70,110]})";
+      if (i != 12) lines += R"(,{"id":2,"class":"chair","score":0.8,"box":[230,150,300,220]})";
+      lines += "]}\n";
+      cv::Mat1b own = mask.clone();
+      if (i == 12) own.setTo(0, own == 2);
+      write("found/masks/" + stamp + ".png", encode_mask_png(own));
+    }
+    write("found/detections.jsonl", lines);
+  }
+
+  [[nodiscard]] std::vector<json> lines_of(const std::string& name) const {
+    std::vector<json> lines;
+    std::istringstream in(content(name));
+    for (std::string line; std::getline(in, line);) lines.push_back(json::parse(line));
+    return lines;
+  }
+};
+
+TEST_F(Objects, AreToldOfAndLabelled) {
+  const Outcome outcome =
+      run("run wall --out out --segmenter detections:found --dynamics full --threads 2");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+
+  const std::vector<json> lines = lines_of("out/objects.jsonl");
+  ASSERT_EQ(lines.size(), static_cast<std::size_t>(kFrames));
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    EXPECT_EQ(lines[i].at("stamp"), fmt::format("{:.6f}", 100 + static_cast<int>(i) / 30.0));
+    ASSERT_EQ(lines[i].at("objects").size(), 2U) << i;
+    const json& person = lines[i].at("objects")[0];
+    const json& chair = lines[i].at("objects")[1];
+    EXPECT_EQ(person.at("class"), "person");
+    EXPECT_EQ(person.at("state"), "dynamic");
+    EXPECT_EQ(chair.at("class"), "chair");
+    EXPECT_EQ(chair.at("filled"), i == 12) << i;
+    EXPECT_EQ(chair.at("track"), lines[0].at("objects")[1].at("track"));
+  }
+  // The wall is 1.5 m before the first camera.
+  EXPECT_NEAR(lines[5].at("objects")[1].at("p_world")[2].get<double>(), 1.5, 0.02);
+
+  std::size_t chairs = 0, others = 0;
+  for (const std::uint8_t label : read_ply(folder_ / "out" / "map.ply").labels) {
+    chairs += label == 57 ? 1 : 0;
+    others += label != 57 && label != 0 ? 1 : 0;
+  }
+  EXPECT_GT(chairs, 500U);
+  EXPECT_EQ(others, 0U);
+
+  const json report = json::parse(content("out/report.json"));
+  EXPECT_EQ(report.at("dynamics").at("mode"), "full");
+  EXPECT_EQ(report.at("objects").at("tracks"), 2);
+  EXPECT_EQ(report.at("objects").at("sightings"), 2 * kFrames);
+  EXPECT_EQ(report.at("objects").at("filled"), 1);
+  EXPECT_EQ(report.at("objects").at("classes").at("person").at("dynamic"), kFrames);
+  EXPECT_THAT(content("out/report.html"), HasSubstr("<svg class=\"boxes\""));
+}
+
+TEST_F(Objects, AreTheSameToTheBitForAnyThreads) {
+  const std::string command = " --segmenter detections:found --dynamics full --threads ";
+  ASSERT_EQ(run("run wall --out a" + command + "1").exit_code, 0);
+  ASSERT_EQ(run("run wall --out b" + command + "3").exit_code, 0);
+  EXPECT_FALSE(content("a/objects.jsonl").empty());
+  EXPECT_TRUE(content("a/objects.jsonl") == content("b/objects.jsonl"));
+  EXPECT_TRUE(content("a/map.ply") == content("b/map.ply"));
+}
+
+TEST_F(Objects, OfAnEarlierRunDoNotStay) {
+  ASSERT_EQ(run("run wall --out out --segmenter detections:found --dynamics mask").exit_code, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "out/objects.jsonl"));
+  ASSERT_EQ(run("run wall --out out --segmenter none --dynamics mask").exit_code, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out/objects.jsonl"));
+  ASSERT_EQ(run("run wall --out out --segmenter detections:found --dynamics off").exit_code, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out/objects.jsonl"));
+  const json report = json::parse(content("out/report.json"));
+  EXPECT_EQ(report.at("dynamics").at("mode"), "off");
+  EXPECT_TRUE(report.at("objects").at("tracks").is_null());
+}
+
+}  // namespace
+}  // namespace stillmap
