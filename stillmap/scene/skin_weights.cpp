@@ -210,6 +210,23 @@ std::vector<std::uint32_t> greatest_patch(const Net& net,
   return greatest;
 }
 
+constexpr bool is_of_trunk(std::size_t joint) {
+  return joint <= static_cast<std::size_t>(Joint::kHead);
+}
+
+// Whether the flesh of two joints meets on a body: a limb's bones with the next, its root with the
+// trunk about it. Large triangles may leave out a part of the trunk.
+bool meet(std::size_t a, std::size_t b) {
+  if (a == b || is_neighbour(a, b) || (is_of_trunk(a) && is_of_trunk(b))) return true;
+  const auto pair = [&](Joint first, Joint second) {
+    const std::size_t i = static_cast<std::size_t>(first), j = static_cast<std::size_t>(second);
+    return (a == i && b == j) || (a == j && b == i);
+  };
+  return pair(Joint::kNeck, Joint::kLeftShoulder) || pair(Joint::kNeck, Joint::kRightShoulder) ||
+         pair(Joint::kSpine, Joint::kLeftHip) || pair(Joint::kSpine, Joint::kRightHip) ||
+         pair(Joint::kLeftHip, Joint::kRightHip);
+}
+
 // Knots that no way over neighbouring bones connects with the rest of their piece: what a hand
 // covers on a hip is nearest to the hand.
 std::vector<std::uint32_t> strays(const Net& net, const Labels& labels) {
@@ -219,9 +236,7 @@ std::vector<std::uint32_t> strays(const Net& net, const Labels& labels) {
     const std::vector<std::uint32_t> piece =
         connected(net, start, in_piece, [](auto, auto) { return true; });
     const std::uint32_t root = greatest_patch(net, labels, piece).front();
-    connected(net, root, reached, [&](auto a, auto b) {
-      return labels[a] == labels[b] || is_neighbour(labels[a], labels[b]);
-    });
+    connected(net, root, reached, [&](auto a, auto b) { return meet(labels[a], labels[b]); });
   }
   std::vector<std::uint32_t> found;
   for (std::uint32_t i = 0; i < labels.size(); ++i) {
