@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 #include <string_view>
 #include <vector>
 
@@ -154,6 +155,7 @@ class MeshMaker {
       if (id < materials_.size() && materials_[id].dissolve < kClear) continue;
       Mesh::Triangle triangle{};
       for (std::size_t i = 0; i < 3; ++i) triangle[i] = corner(part.indices[3 * t + i]);
+      if (!triangles_.insert(places_of(triangle)).second) continue;
       mesh_.triangles.push_back(triangle);
       mesh_.materials.push_back(static_cast<MaterialId>(id));
     }
@@ -165,6 +167,15 @@ class MeshMaker {
       throw Error("{}: a face names corner {} of {}", place_, index + 1, size / width);
     }
     return static_cast<std::size_t>(index) * width;
+  }
+
+  // Equal for both sides of a triangle: some models have each twice, once for either side, which
+  // would fight over who is in front.
+  [[nodiscard]] std::array<Place, 3> places_of(const Mesh::Triangle& triangle) const {
+    std::array<Place, 3> places;
+    for (std::size_t i = 0; i < 3; ++i) places[i] = place_of(mesh_.positions[triangle[i]]);
+    std::ranges::sort(places);
+    return places;
   }
 
   std::uint32_t corner(const tinyobj::index_t& index) {
@@ -198,6 +209,7 @@ class MeshMaker {
   const std::vector<tinyobj::material_t>& materials_;
   std::string place_;
   std::map<Key, std::uint32_t> corners_;
+  std::set<std::array<Place, 3>> triangles_;  // those that there are
   Mesh mesh_;
 };
 
