@@ -24,8 +24,8 @@ struct ChairModel {
   double left_m;
 };
 constexpr std::array<ChairModel, 2> kChairs{{
-    {"Scopia", "office_chair", 0.487, 0.0, -0.016},
-    {"KatorLegaz", "office-chair", 0.498, -0.03, 0.0},
+    {"Scopia", "office_chair", 0.487, -0.04, -0.016},
+    {"KatorLegaz", "office-chair", 0.498, -0.04, 0.0},
 }};
 
 struct Library {

@@ -195,19 +195,42 @@ std::vector<std::uint32_t> connected(const Net& net,
 
 using Labels = std::vector<std::size_t>;  // the nearest joint of each knot
 
-// The greatest patch of one label in a piece of the surface.
+// The greatest patch of one label, of those that are asked for, in a piece of the surface.
+template <typename Wanted>
 std::vector<std::uint32_t> greatest_patch(const Net& net,
                                           const Labels& labels,
-                                          const std::vector<std::uint32_t>& piece) {
+                                          const std::vector<std::uint32_t>& piece,
+                                          const Wanted& wanted) {
   std::vector<bool> seen(labels.size(), false);
   std::vector<std::uint32_t> greatest;
   for (const std::uint32_t knot : piece) {
-    if (seen[knot]) continue;
+    if (seen[knot] || !wanted(labels[knot])) continue;
     std::vector<std::uint32_t> patch =
         connected(net, knot, seen, [&](auto a, auto b) { return labels[a] == labels[b]; });
     if (patch.size() > greatest.size()) greatest = std::move(patch);
   }
   return greatest;
+}
+
+constexpr bool is_wrist(std::size_t joint) {
+  return joint == static_cast<std::size_t>(Joint::kLeftWrist) ||
+         joint == static_cast<std::size_t>(Joint::kRightWrist);
+}
+
+// The knot whose label is the right one for sure: that of a hand which is a piece of its own, as it
+// is where sleeves are, even where it lies on a hip; else that of the greatest patch.
+std::uint32_t root_of(const Mesh& mesh,
+                      const Net& net,
+                      const Labels& labels,
+                      const std::vector<std::uint32_t>& piece) {
+  constexpr float kLongestHand_m = 0.4F;
+  Eigen::AlignedBox3f box;
+  for (const std::uint32_t knot : piece) box.extend(mesh.positions[net.corners[knot]]);
+  if (box.sizes().norm() < kLongestHand_m) {
+    const std::vector<std::uint32_t> hand = greatest_patch(net, labels, piece, is_wrist);
+    if (10 * hand.size() > piece.size()) return hand.front();
+  }
+  return greatest_patch(net, labels, piece, [](std::size_t) { return true; }).front();
 }
 
 constexpr bool is_of_trunk(std::size_t joint) {
@@ -229,13 +252,13 @@ bool meet(std::size_t a, std::size_t b) {
 
 // Knots that no way over neighbouring bones connects with the rest of their piece: what a hand
 // covers on a hip is nearest to the hand.
-std::vector<std::uint32_t> strays(const Net& net, const Labels& labels) {
+std::vector<std::uint32_t> strays(const Mesh& mesh, const Net& net, const Labels& labels) {
   std::vector<bool> in_piece(labels.size(), false), reached(labels.size(), false);
   for (std::uint32_t start = 0; start < labels.size(); ++start) {
     if (in_piece[start]) continue;
     const std::vector<std::uint32_t> piece =
         connected(net, start, in_piece, [](auto, auto) { return true; });
-    const std::uint32_t root = greatest_patch(net, labels, piece).front();
+    const std::uint32_t root = root_of(mesh, net, labels, piece);
     connected(net, root, reached, [&](auto a, auto b) { return meet(labels[a], labels[b]); });
   }
   std::vector<std::uint32_t> found;
@@ -286,7 +309,7 @@ std::vector<JointWeights> weights_along_surface(const Mesh& rest, const Skeleton
     labels.push_back(nearest_of(distances.back()));
   }
   for (int round = 0; round < kRelabels; ++round) {
-    const std::vector<std::uint32_t> stray = strays(net, labels);
+    const std::vector<std::uint32_t> stray = strays(rest, net, labels);
     if (stray.empty()) break;
     for (const std::uint32_t knot : stray) {
       distances[knot][labels[knot]] = std::numeric_limits<float>::max();
