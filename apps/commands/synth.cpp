@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -33,6 +34,7 @@ struct SynthArguments {
   bool clean = false;
   std::vector<std::string> without;
   std::string detections = "none";
+  std::string assets = "auto";
   std::size_t threads = std::max(1U, std::thread::hardware_concurrency());
 };
 
@@ -72,6 +74,28 @@ DetectionKind detection_kind(const std::string& name) {
   throw Error("--detections {}: {}", name, name_hint(name, known));
 }
 
+// Null: everything is made in code.
+std::shared_ptr<const Assets> chosen_assets(const std::string& name) {
+  const std::vector<std::string> known = {"auto", "none"};
+  if (name == "none") return nullptr;
+  if (name != "auto") throw Error("--assets {}: {}", name, name_hint(name, known));
+  try {
+    std::optional<Assets> assets = installed_assets();
+    if (!assets) return nullptr;
+    return std::make_shared<const Assets>(std::move(*assets));
+  } catch (const Error& error) {
+    throw Error("{}; or leave it out with --assets none", error.what());
+  }
+}
+
+std::string assets_line(const SyntheticOptions& options) {
+  if (!options.assets) return "assets      none; people and furniture are made in code\n";
+  return fmt::format(
+      "assets      {} people and {} chairs of sweethome3d-furniture, see assets.txt\n",
+      options.assets->people.size(),
+      options.assets->chairs.size());
+}
+
 // One side of --size. Smaller images show nothing, larger ones are no camera's.
 int parse_side(std::string_view text, const std::string& size) {
   constexpr int kSmallest = 32, kLargest = 4096;
@@ -106,6 +130,7 @@ void render(const SynthArguments& arguments) {
   if (arguments.clean) options.sensor = SensorOptions::clean();
   for (const std::string& name : arguments.without) remove_effect(options, name);
   const DetectionKind detections = detection_kind(arguments.detections);
+  options.assets = chosen_assets(arguments.assets);
 
   ProgressBar progress("frames");
   write_sequence(SyntheticSequence(options),
@@ -115,6 +140,7 @@ void render(const SynthArguments& arguments) {
   progress.finish();
   print_output(fmt::format(
       "sequence    {} frames of {} in {}\n", options.frames, arguments.size, arguments.out));
+  print_output(assets_line(options));
 }
 
 }  // namespace
@@ -144,6 +170,12 @@ void add_synth_command(CLI::App& app, CommandResult&) {
                    arguments->detections,
                    "also write detections/ from the truth: none, perfect, or imperfect, which "
                    "has the faults of a network")
+      ->capture_default_str();
+  command
+      ->add_option("--assets",
+                   arguments->assets,
+                   "people and chairs of the Debian package sweethome3d-furniture: auto, where it "
+                   "is installed, or none")
       ->capture_default_str();
   command->add_option("--threads", arguments->threads, "that render; the result is the same")
       ->check(CLI::Range(std::size_t{1}, std::size_t{256}))

@@ -26,12 +26,13 @@ std::string read_image_file(const std::filesystem::path& path) {
 }  // namespace
 
 ColorImage read_color(const std::filesystem::path& path) {
-  const std::string bytes = read_image_file(path);
-  if (is_jpeg(bytes)) return ColorImage(decode_jpeg(bytes, path.string()));
-  if (is_png(bytes)) {
-    return ColorImage(cv::Mat3b(decode_png(bytes, PngKind::kRgb8, path.string())));
-  }
-  throw DamagedImage("{}: neither PNG nor JPEG, expected a colour image", path.string());
+  return decode_color(read_image_file(path), path.string());
+}
+
+ColorImage decode_color(std::string_view bytes, const std::string& name) {
+  if (is_jpeg(bytes)) return ColorImage(decode_jpeg(bytes, name));
+  if (is_png(bytes)) return ColorImage(cv::Mat3b(decode_png(bytes, PngKind::kRgb8, name)));
+  throw DamagedImage("{}: neither PNG nor JPEG, expected a colour image", name);
 }
 
 DepthImage read_depth(const std::filesystem::path& path, double depth_factor) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "stillmap/core/error.hpp"
@@ -25,6 +26,10 @@ class DamagedImage : public Error {
 
 /// A PNG (8-bit gray or RGB, transparency dropped) or JPEG, as RGB.
 [[nodiscard]] ColorImage read_color(const std::filesystem::path& path);
+
+/// The same from the bytes of a file that is elsewhere, in an archive; `name` stands in the
+/// messages.
+[[nodiscard]] ColorImage decode_color(std::string_view bytes, const std::string& name);
 
 /// A 16-bit gray PNG. Metres are the stored value / depth_factor; 0 stays 0 = missing.
 [[nodiscard]] DepthImage read_depth(const std::filesystem::path& path, double depth_factor);

@@ -123,6 +123,19 @@ TEST(ReadColor, ReadsAJpegWhateverItsName) {
   EXPECT_LE(cv::norm(read.mat, image.mat, cv::NORM_INF), 6.0);  // also tells RGB from BGR
 }
 
+TEST(DecodeColor, ReadsBytesAndNamesThem) {
+  const ColorImage color = random_color(13, 7);
+  const std::string png = encode_png(color);
+  EXPECT_TRUE(same(decode_color(png, "a.zip: b").mat, color.mat));
+  try {
+    (void)decode_color(std::string_view(png).substr(0, png.size() / 2), "a.zip: b");
+    FAIL();
+  } catch (const DamagedImage& error) {
+    EXPECT_THAT(error.what(), HasSubstr("a.zip: b"));
+  }
+  EXPECT_THROW((void)decode_color("", "a.zip: b"), DamagedImage);
+}
+
 TEST(ReadColor, RefusesEveryTruncationOfAPng) {
   const TemporaryFolder folder;
   const std::string bytes = encode_png(random_color(20, 20));

@@ -56,12 +56,15 @@ struct PosedSurface {
   std::vector<Eigen::Vector3f> normals;
 };
 
+/// Whether a body's limbs touch others or the trunk at rest, as those of models of people may.
+enum class Limbs : std::uint8_t { kApart, kTouching };
+
 /// A person's surface, which bends smoothly at the joints (linear blend skinning).
 class Body {
  public:
   /// `rest` is the surface at rest, in the frame of the pelvis joint. Each corner is bound to the
-  /// bones near it.
-  Body(Mesh rest, const Skeleton& skeleton);
+  /// bones near it, where limbs touch only to those that it hangs together with.
+  Body(Mesh rest, const Skeleton& skeleton, Limbs limbs = Limbs::kApart);
 
   [[nodiscard]] const Mesh& rest() const { return rest_; }
   [[nodiscard]] const Skeleton& skeleton() const { return skeleton_; }

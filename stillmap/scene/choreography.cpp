@@ -38,12 +38,17 @@ struct Choreography::Cast {
   std::vector<Prop> props;
 };
 
-void add_people(World& office, Activity activity, std::uint32_t seed) {
-  for (std::size_t i = 0; i < people_in(activity); ++i) {
+void add_people(World& office, Activity activity, std::uint32_t seed, const Assets* assets) {
+  const auto body = [&](std::size_t i) {
+    if (assets != nullptr && !assets->people.empty()) {
+      return make_person(assets->people[(seed + i) % assets->people.size()], office.materials);
+    }
     const std::uint64_t look_seed = 977 * std::uint64_t{seed} + 31 * i + 5;
-    office.people.push_back({fmt::format("person_{}", i + 1),
-                             static_cast<std::uint8_t>(i + 1),
-                             make_person(random_look(look_seed), office.materials)});
+    return make_person(random_look(look_seed), office.materials);
+  };
+  for (std::size_t i = 0; i < people_in(activity); ++i) {
+    office.people.push_back(
+        {fmt::format("person_{}", i + 1), static_cast<std::uint8_t>(i + 1), body(i)});
   }
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "stillmap/scene/assets.hpp"
 #include "stillmap/scene/world.hpp"
 
 namespace stillmap {
@@ -15,8 +16,12 @@ enum class Activity {
   kWalking,  ///< three people who get up, walk, cross before the camera, push a chair, carry a box
 };
 
-/// Adds the people of an activity to the office of make_office(). Their clothes vary with `seed`.
-void add_people(World& office, Activity activity, std::uint32_t seed);
+/// Adds the people of an activity to the office of make_office(). Their clothes vary with `seed`;
+/// where `assets` has people, it says which of them come first.
+void add_people(World& office,
+                Activity activity,
+                std::uint32_t seed,
+                const Assets* assets = nullptr);
 
 /// Who and what is where at which time: continuous with continuous velocity, defined for t >= 0.
 class Choreography {

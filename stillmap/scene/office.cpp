@@ -16,7 +16,7 @@ constexpr double kHeight = 2.7;
 
 class OfficeBuilder {
  public:
-  explicit OfficeBuilder(std::uint32_t seed) : painter_(seed) {}
+  OfficeBuilder(std::uint32_t seed, const Assets* assets) : painter_(seed), assets_(assets) {}
 
   World build() {
     add_room();
@@ -32,6 +32,7 @@ class OfficeBuilder {
     add_floor_things();
     world_.ambient = 0.5;
     world_.materials = painter_.take_materials();
+    replace_chairs();
     return std::move(world_);
   }
 
@@ -92,10 +93,12 @@ class OfficeBuilder {
   void add_second_desk(const Isometry3d& T_world_desk);
   void add_third_desk(const Isometry3d& T_world_desk);
   void add_movables();
+  void replace_chairs();
   void add_floor_things();
   void add_low_shelf(const Isometry3d& T_world_shelf);
 
   Painter painter_;
+  const Assets* assets_;  // may be null
   World world_;
   std::map<std::string, int> numbers_;
 };
@@ -231,6 +234,17 @@ void OfficeBuilder::add_movables() {
       "box_1", "box", 13, make_carton(painter_, {0.40, 0.32, 0.30}), placed(1.2, -2.66, 0.75, 0));
 }
 
+// Each of the models in its turn.
+void OfficeBuilder::replace_chairs() {
+  if (assets_ == nullptr || assets_->chairs.empty()) return;
+  std::size_t next = 0;
+  for (Thing& thing : world_.things) {
+    if (thing.class_name != "chair") continue;
+    const AssetModel& chair = assets_->chairs[next++ % assets_->chairs.size()];
+    thing.mesh = add_model(chair, world_.materials);
+  }
+}
+
 void OfficeBuilder::add_floor_things() {
   const ShelfSize size;
   const Isometry3d T_world_shelf = placed(0.6, 2.82, 0, 0);
@@ -287,8 +301,8 @@ void OfficeBuilder::add_low_shelf(const Isometry3d& T_world_shelf) {
 
 }  // namespace
 
-World make_office(std::uint32_t seed) {
-  return OfficeBuilder(seed).build();
+World make_office(std::uint32_t seed, const Assets* assets) {
+  return OfficeBuilder(seed, assets).build();
 }
 
 }  // namespace stillmap

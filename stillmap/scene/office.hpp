@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "stillmap/scene/assets.hpp"
 #include "stillmap/scene/world.hpp"
 
 namespace stillmap {
@@ -11,6 +12,7 @@ namespace stillmap {
 /// blank stretches, desks with monitors, keyboards, books and mugs, chairs, a shelf, lamps. Its
 /// layout is fixed; `seed` varies what is painted on it. Things that may be moved: "chair_1" and
 /// "chair_2" (ids 10 and 11) at their desks, "chair_3" (12) in the middle, the carton "box_1" (13).
-[[nodiscard]] World make_office(std::uint32_t seed);
+/// The chairs are those of `assets` where it has some.
+[[nodiscard]] World make_office(std::uint32_t seed, const Assets* assets = nullptr);
 
 }  // namespace stillmap

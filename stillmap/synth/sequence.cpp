@@ -15,8 +15,8 @@ namespace stillmap {
 namespace {
 
 std::shared_ptr<const World> furnished_world(const SyntheticOptions& options) {
-  World world = make_office(options.seed);
-  add_people(world, options.activity, options.seed);
+  World world = make_office(options.seed, options.assets.get());
+  add_people(world, options.activity, options.seed, options.assets.get());
   return std::make_shared<const World>(std::move(world));
 }
 

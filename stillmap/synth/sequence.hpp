@@ -9,6 +9,7 @@
 #include "stillmap/core/rgbd_frame.hpp"
 #include "stillmap/core/trajectory.hpp"
 #include "stillmap/render/renderer.hpp"
+#include "stillmap/scene/assets.hpp"
 #include "stillmap/scene/choreography.hpp"
 #include "stillmap/synth/camera_path.hpp"
 #include "stillmap/synth/sensor.hpp"
@@ -27,8 +28,9 @@ struct SyntheticOptions {
   std::size_t frames = 300;
   double frames_per_second = 30.0;
   std::uint32_t seed = 0;  ///< of the pictures on things, the people's clothes, the sensor's noise
-  RenderOptions render;    ///< effects of light
-  SensorOptions sensor;    ///< a Kinect's effects unless SensorOptions::clean()
+  std::shared_ptr<const Assets> assets;  ///< people and furniture to use; null: none
+  RenderOptions render;                  ///< effects of light
+  SensorOptions sensor;                  ///< a Kinect's effects unless SensorOptions::clean()
 };
 
 /// A frame as the sensor gives it, and the truth about it.

@@ -213,6 +213,9 @@ void write_sequence(const SyntheticSequence& sequence,
       });
   detections.finish();
   truth.write(folder / "truth", sequence.camera(), objects);
+  if (sequence.options().assets) {
+    write_file_atomically(folder / "assets.txt", sequence.options().assets->credits);
+  }
   // The lists come last: a folder with them is complete.
   write_file_atomically(folder / "camera.yaml", format_camera_yaml(sequence.camera()));
   write_file_atomically(folder / "groundtruth.txt", format_trajectory(sequence.ground_truth()));

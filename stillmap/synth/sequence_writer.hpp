@@ -22,7 +22,8 @@ struct WriteOptions {
 };
 
 /// Writes a sequence in the layout of the TUM RGB-D benchmark, with PNG images, associations.txt,
-/// camera.yaml, groundtruth.txt, the folder truth/ and, where asked for, detections/.
+/// camera.yaml, groundtruth.txt, the folder truth/ and, where asked for, detections/;
+/// where assets are used, assets.txt says whose they are.
 /// `on_progress`, where given, is called with the number of frames done and of all. Throws Error
 /// for a folder that holds something already, and when anything cannot be written; the lists come
 /// last, so that a folder with rgb.txt is complete.
