@@ -12,7 +12,7 @@ namespace stillmap {
 namespace {
 
 constexpr double kTextHeight = 15;    // of a line, for an image 640 pixels wide
-constexpr double kLetterWidth = 6.6;  // on average, so that labels stay inside the image
+constexpr double kLetterWidth = 7.4;  // on average, so that labels stay inside the image
 
 struct Label {
   std::string text;

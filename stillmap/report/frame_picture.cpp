@@ -74,7 +74,7 @@ ColorImage draw_frame(const SampleFrame& frame, int max_width_px) {
     return fitted(mask, image.size(), picture.size());
   };
   tint(picture, fit(frame.extended_mask), MaskStyle::kExtended, 0.4);
-  tint(picture, fit(frame.jumps), MaskStyle::kJumps, 0.6);
+  tint(picture, fit(frame.jumps), MaskStyle::kJumps, 0.45);
   outline(picture, fit(frame.raw_mask), MaskStyle::kRaw);
   const float scale = static_cast<float>(picture.cols) / static_cast<float>(image.cols);
   for (const FateStyle& style : kStyles) {

@@ -47,7 +47,7 @@ std::string objects_html(const RunReport& report) {
                : "<p>No network looked for objects.</p>";
   }
   if (report.objects->empty()) return "<p>No objects were found.</p>";
-  constexpr std::size_t kMost = 40;
+  constexpr std::size_t kMost = 20;
   std::vector<ObjectSummary> objects = *report.objects;
   std::ranges::stable_sort(objects, std::ranges::greater{}, &ObjectSummary::frames);
   std::string rows;

@@ -270,7 +270,7 @@ TEST(ReportHtml, says_why_there_are_no_objects) {
   report.objects->resize(50);
   report.objects->at(49).frames = 9;
   const std::string page = report_html(report);
-  EXPECT_THAT(page, HasSubstr("and 10 more"));
+  EXPECT_THAT(page, HasSubstr("and 30 more"));
   EXPECT_EQ(first_fault(page), "");
 }
 

@@ -65,7 +65,7 @@ FrameDynamics judged(const Scene& scene) {
 }
 
 const Thing kPerson{"person", {100, 40, 60, 180}, 1.5F};
-const Thing kTouchedChair{"chair", {150, 120, 50, 100}, 1.6F};  // overlaps the person
+const Thing kTouchedChair{"chair", {150, 120, 50, 100}, 1.5F};  // overlaps the person
 const Thing kChairApart{"chair", {240, 140, 50, 80}, 2.0F};
 const Thing kScreen{"tv", {10, 30, 60, 40}, 2.5F};
 
@@ -103,7 +103,7 @@ TEST(LabelImage, OfNoObjectsIsEmpty) {
   EXPECT_TRUE(label_image(DepthImage(cv::Mat1f(4, 4, 1.0F)), {}).empty());
 }
 
-// The last frame of a run's first key frame: a map with exactly the chair's points labelled.
+// One frame, one key frame: exactly what is called a chair is labelled in the map.
 TEST(System, LabelsStaticObjectsInTheMap) {
   SyntheticOptions options;
   options.camera = synthetic_camera(320, 240);
