@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stillmap/dynamics/depth_stability.hpp"
 
-#include <cmath>
+#include <algorithm>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -87,7 +87,9 @@ TEST(DepthStability, FeaturesOnADepthEdgeAreUnstableAndThoseOfTheWallsAreNot) {
   int wrong = 0;
   for (std::size_t i = 0; i < px.size(); ++i) {
     const bool on_edge = px[i].x() == 80.0F;
-    if (on_edge) EXPECT_EQ(found[i], DepthStability::kUnstable);
+    if (on_edge) {
+      EXPECT_EQ(found[i], DepthStability::kUnstable);
+    }
     if (!on_edge && found[i] != DepthStability::kStable) ++wrong;
   }
   EXPECT_LE(wrong, 4);
