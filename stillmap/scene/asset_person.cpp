@@ -98,6 +98,7 @@ Skeleton skeleton_of(const FittedModel& model, double scale) {
     put(root, 1, limb.middle);
     put(root, 2, limb.end);
   };
+  skeleton.positions[static_cast<std::size_t>(Joint::kPelvis)].setZero();
   put(Joint::kSpine, 0, model.spine);
   put(Joint::kChest, 0, model.chest);
   put(Joint::kNeck, 0, model.neck);

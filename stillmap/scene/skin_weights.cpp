@@ -212,9 +212,12 @@ std::vector<std::uint32_t> greatest_patch(const Net& net,
   return greatest;
 }
 
-constexpr bool is_wrist(std::size_t joint) {
-  return joint == static_cast<std::size_t>(Joint::kLeftWrist) ||
-         joint == static_cast<std::size_t>(Joint::kRightWrist);
+// Moved by an elbow or a wrist.
+constexpr bool is_of_forearm(std::size_t joint) {
+  return (joint >= static_cast<std::size_t>(Joint::kLeftElbow) &&
+          joint <= static_cast<std::size_t>(Joint::kLeftWrist)) ||
+         (joint >= static_cast<std::size_t>(Joint::kRightElbow) &&
+          joint <= static_cast<std::size_t>(Joint::kRightWrist));
 }
 
 // The knot whose label is the right one for sure: that of a hand which is a piece of its own, as it
@@ -227,8 +230,8 @@ std::uint32_t root_of(const Mesh& mesh,
   Eigen::AlignedBox3f box;
   for (const std::uint32_t knot : piece) box.extend(mesh.positions[net.corners[knot]]);
   if (box.sizes().norm() < kLongestHand_m) {
-    const std::vector<std::uint32_t> hand = greatest_patch(net, labels, piece, is_wrist);
-    if (10 * hand.size() > piece.size()) return hand.front();
+    const std::vector<std::uint32_t> hand = greatest_patch(net, labels, piece, is_of_forearm);
+    if (20 * hand.size() > piece.size()) return hand.front();
   }
   return greatest_patch(net, labels, piece, [](std::size_t) { return true; }).front();
 }
