@@ -171,7 +171,7 @@ TEST_F(Run, RefusesAFolderThatCannotBeWritten) {
 TEST_F(Run, AFullDiskIsOneLineAndLeavesNoHalfFile) {
   // No file beyond 64 KiB: the map does not fit, the trajectory does.
   const Outcome outcome =
-      run("config > /dev/null; ulimit -f 64; trap '' XFSZ; '" STILLMAP_BINARY_DIR
+      run("config > /dev/null; ulimit -f 128; trap '' XFSZ; '" STILLMAP_BINARY_DIR
           "/bin/stillmap' run wall --out out");
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, MatchesRegex("stillmap: [^\n]*map.ply[^\n]*\n"));

@@ -13,6 +13,7 @@ namespace {
 
 // Samples of a neighbourhood of 4 x 4 use different rays, so that smoothing over it sees them all.
 constexpr int kPattern = 4;
+constexpr int kStep = 3;  // pixels from one sample to the next
 constexpr int kRaysPerLamp = 1;
 constexpr int kRaysAround = 1;
 constexpr float kNearness = 0.6F;  // metres within which things darken corners
@@ -96,14 +97,15 @@ Lighting::Lighting(const RayScene& scene,
                    const World& world,
                    const SurfaceBuffer& surfaces,
                    const LightOptions& options)
-    : width_((surfaces.width + 1) / 2), height_((surfaces.height + 1) / 2) {
+    : width_((surfaces.width + kStep - 1) / kStep), height_((surfaces.height + kStep - 1) / kStep) {
   STILLMAP_CHECK(world.lamps.size() <= kMostLamps);
   samples_.reserve(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
   Openness start;
   if (!options.shadows) start.lamps.fill(1.F);
   if (options.shadows) start.around = 0.F;
   for (int y = 0; y < height_; ++y) {
-    for (int x = 0; x < width_; ++x) samples_.push_back({&surfaces.at(2 * x, 2 * y), start});
+    for (int x = 0; x < width_; ++x)
+      samples_.push_back({&surfaces.at(kStep * x, kStep * y), start});
   }
   if (!options.shadows) return;
   trace(scene, world);
@@ -179,14 +181,13 @@ void Lighting::smooth(int dx, int dy) {
 Openness Lighting::openness_at(int x, int y, const Surfel& surfel) const {
   Openness sum{{}, 0.F};
   float weights = 0.F;
-  const int left = x / 2, top = y / 2;
+  const int left = x / kStep, top = y / kStep;
   for (int ny = top; ny <= std::min(top + 1, height_ - 1); ++ny) {
     for (int nx = left; nx <= std::min(left + 1, width_ - 1); ++nx) {
       const Sample& near = sample_at(nx, ny);
       if (!smooth_between(surfel, *near.surfel)) continue;
-      const float weight =
-          (2 * nx == x || (x & 1) != 0 ? 1.F : 0.F) * (2 * ny == y || (y & 1) != 0 ? 1.F : 0.F) +
-          1e-3F;
+      const int right = std::abs(x - kStep * nx), below = std::abs(y - kStep * ny);
+      const float weight = static_cast<float>((kStep - right) * (kStep - below)) + 1e-3F;
       add_share(sum, near.openness, weight);
       weights += weight;
     }

@@ -23,7 +23,7 @@ struct LightOptions {
   bool shadows = true;  ///< cast by lamps, soft, and the darkness of corners
 };
 
-/// Shadows of an image, traced at every second pixel and smoothed within surfaces.
+/// Shadows of an image, traced at every third pixel each way and smoothed within surfaces.
 class Lighting {
  public:
   Lighting(const RayScene& scene,
@@ -45,7 +45,7 @@ class Lighting {
   void trace(const RayScene& scene, const World& world);
   void smooth(int dx, int dy);
 
-  int width_ = 0;  // of the samples: half of the image
+  int width_ = 0;  // of the samples
   int height_ = 0;
   std::vector<Sample> samples_;
 };

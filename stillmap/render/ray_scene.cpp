@@ -110,6 +110,7 @@ WorldGeometry::Parts::Parts(std::shared_ptr<const World> shown)
       device(rtcNewDevice("threads=1,set_affinity=0")),
       fixed_scene(rtcNewScene(device.get())) {
   const std::vector<Thing>& things = world->things;
+  rtcSetSceneBuildQuality(fixed_scene.get(), RTC_BUILD_QUALITY_HIGH);  // built once
   fixed.resize(things.size());
   vertices.resize(things.size());
   for (std::uint32_t i = 0; i < things.size(); ++i) {

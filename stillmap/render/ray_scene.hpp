@@ -28,8 +28,8 @@ struct Exposure {
 /// middle, then the middles of its halves.
 inline constexpr std::array<float, 3> kMoments{0.5F, 0.25F, 0.75F};
 inline constexpr std::size_t kMiddle = 0;
-/// At which of them each quarter of a pixel is taken, in rows: a diagonal each.
-inline constexpr std::array<std::size_t, 4> kQuarterMoments{1, 2, 2, 1};
+/// At which of them each quarter of a pixel is taken, in rows: the upper ones before the lower.
+inline constexpr std::array<std::size_t, 4> kQuarterMoments{1, 1, 2, 2};
 
 /// A ray in world axes.
 struct Ray {

@@ -2,6 +2,7 @@
 #include "stillmap/render/renderer.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "stillmap/core/error.hpp"
 #include "stillmap/render/shading.hpp"
@@ -29,6 +30,13 @@ std::uint8_t to_byte(float value) {
   return static_cast<std::uint8_t>(std::clamp(value + 0.5F, 0.F, 255.F));
 }
 
+// What rays through two opposite quarters of a pixel meet.
+struct TracedPixel {
+  cv::Point at;
+  std::array<std::size_t, 2> quarters{0, 3};
+  std::array<SurfaceHit, 2> hits;
+};
+
 // All that colouring the pixels of one image takes.
 class Painter {
  public:
@@ -53,30 +61,36 @@ class Painter {
     return in_light(patch, material, lighting_->openness_at(x, y, surfel));
   }
 
-  // A pixel whose quarters show what `hits` says.
-  [[nodiscard]] Eigen::Vector3f mixed(int x,
-                                      int y,
-                                      const PixelRays& rays,
-                                      const std::array<SurfaceHit, 4>& hits) const {
+  // A pixel of which two quarters, and the centre, have been traced.
+  [[nodiscard]] Eigen::Vector3f mixed(const TracedPixel& pixel, const PixelRays& rays) const {
+    const std::array<SurfaceHit, 3> hits{
+        surfaces_->at(pixel.at.x, pixel.at.y).hit, pixel.hits[0], pixel.hits[1]};
     Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-    std::array<bool, 4> done{};
-    for (std::size_t first = 0; first < 4; ++first) {
+    std::array<bool, 3> done{};
+    for (std::size_t first = 0; first < hits.size(); ++first) {
       if (done[first] || !hits[first].valid()) continue;
       const SurfaceTriangle triangle = scene_->triangle(hits[first]);
       const Material& material = world_->materials[triangle.material];
       const PixelSurface surface(triangle, material, *camera_, rays);
-      // Most often several quarters show the same triangle.
-      for (std::size_t k = first; k < 4; ++k) {
+      // Most often several of the rays show the same triangle, in the same light.
+      Eigen::Vector3f albedo = Eigen::Vector3f::Zero();
+      std::optional<float> light;
+      for (std::size_t k = first; k < hits.size(); ++k) {
         const bool same =
             hits[k].object == hits[first].object && hits[k].triangle == hits[first].triangle;
         if (!same) continue;
         done[k] = true;
-        const SurfacePatch patch = surface.quarter(k);
+        const SurfacePatch patch =
+            k == 0 ? surface.center() : surface.quarter(pixel.quarters[k - 1]);
+        albedo += patch.albedo;
+        if (light) continue;
         const Surfel surfel{hits[k], triangle.material, patch.point, patch.normal};
-        sum += in_light(patch, material, lighting_->openness_at(x, y, surfel));
+        const Openness openness = lighting_->openness_at(pixel.at.x, pixel.at.y, surfel);
+        light = light_on(*world_, patch.point, patch.normal, openness);
       }
+      sum += lit(albedo, material, *light);
     }
-    return 0.25F * sum;
+    return sum / static_cast<float>(hits.size());
   }
 
  private:
@@ -99,31 +113,38 @@ PixelRays without_extent(PixelRays rays) {
   return rays;
 }
 
-// What the quarters of some pixels show. Rays of one moment and of neighbouring pixels are traced
-// together: they take much the same way through the world.
-std::vector<std::array<SurfaceHit, 4>> trace_quarters(const RayScene& scene,
-                                                      const MovingCamera& camera,
-                                                      const cv::Mat2f& quarter_rays,
-                                                      const std::vector<cv::Point>& pixels) {
-  std::vector<std::array<SurfaceHit, 4>> hits(pixels.size());
-  for (std::size_t k = 0; k < 4; ++k) {
-    const MovingCamera::Moment& moment = camera.quarters[k];
-    const int dx = static_cast<int>(k % 2), dy = static_cast<int>(k / 2);
-    for (std::size_t first = 0; first < pixels.size(); first += kRays) {
-      const std::size_t count = std::min(kRays, pixels.size() - first);
+// Traces two opposite quarters of some pixels, one diagonal or the other by turns. Rays of one
+// moment and of neighbouring pixels are traced together: they take much the same way.
+std::vector<TracedPixel> trace_quarters(const RayScene& scene,
+                                        const MovingCamera& camera,
+                                        const cv::Mat2f& quarter_rays,
+                                        const std::vector<cv::Point>& pixels) {
+  std::vector<TracedPixel> traced(pixels.size());
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const bool falling = (pixels[i].x + pixels[i].y) % 2 == 0;
+    traced[i].at = pixels[i];
+    if (!falling) traced[i].quarters = {1, 2};
+  }
+  for (std::size_t k = 0; k < 2; ++k) {
+    for (std::size_t first = 0; first < traced.size(); first += kRays) {
+      const std::size_t count = std::min(kRays, traced.size() - first);
       std::array<Ray, kRays> packet;
       for (std::size_t i = 0; i < count; ++i) {
-        const cv::Point& p = pixels[first + i];
+        const TracedPixel& pixel = traced[first + i];
+        const std::size_t quarter = pixel.quarters[k];
+        const MovingCamera::Moment& moment = camera.quarters[quarter];
+        const int dx = static_cast<int>(quarter % 2), dy = static_cast<int>(quarter / 2);
         packet[i].origin = moment.origin;
         packet[i].direction =
-            moment.R_world_camera * ray_of(quarter_rays(2 * p.y + dy, 2 * p.x + dx));
+            moment.R_world_camera * ray_of(quarter_rays(2 * pixel.at.y + dy, 2 * pixel.at.x + dx));
       }
-      const std::array<SurfaceHit, kRays> found =
-          scene.first_hits({packet.data(), count}, kQuarterMoments[k]);
-      for (std::size_t i = 0; i < count; ++i) hits[first + i][k] = found[i];
+      // The upper quarters are all of one moment, and so are the lower ones.
+      const std::size_t moment = kQuarterMoments[traced[first].quarters[k]];
+      const std::array<SurfaceHit, kRays> found = scene.first_hits({packet.data(), count}, moment);
+      for (std::size_t i = 0; i < count; ++i) traced[first + i].hits[k] = found[i];
     }
   }
-  return hits;
+  return traced;
 }
 
 // The pixels that a mask marks, those of small blocks together.
@@ -187,11 +208,9 @@ RenderedImage Renderer::render(const Exposure& exposure) const {
     }
   }
   const std::vector<cv::Point> pixels = marked_pixels(mixed);
-  const std::vector<std::array<SurfaceHit, 4>> hits =
-      trace_quarters(scene, camera, quarter_rays_, pixels);
-  for (std::size_t i = 0; i < pixels.size(); ++i) {
-    const cv::Point& p = pixels[i];
-    set_color(p.x, p.y, painter.mixed(p.x, p.y, pixel_rays_at(p.x, p.y), hits[i]));
+  for (const TracedPixel& pixel : trace_quarters(scene, camera, quarter_rays_, pixels)) {
+    const cv::Point& p = pixel.at;
+    set_color(p.x, p.y, painter.mixed(pixel, pixel_rays_at(p.x, p.y)));
   }
   return image;
 }

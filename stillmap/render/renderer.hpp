@@ -26,7 +26,7 @@ struct RenderOptions {
 };
 
 /// Casts rays into a world. Depth and ids come from the ray through each pixel's centre half way
-/// through the exposure. Colour is averaged over the pixel and the exposure: from four rays where
+/// through the exposure. Colour is averaged over the pixel and the exposure: from three rays where
 /// several surfaces show, else worked out on the one surface's plane. Immutable after construction,
 /// so that one renderer may serve several threads.
 class Renderer {

@@ -124,6 +124,14 @@ SurfacePatch PixelSurface::whole() const {
           normal_at(*triangle_, middle_.at, middle_.direction)};
 }
 
+SurfacePatch PixelSurface::center() const {
+  const Eigen::Vector2f uv = uv_at(*triangle_, middle_.at);
+  const TexelSum texel = material_->texture.sample({uv.x(), uv.y()}, level_, material_->repeats);
+  return {to_color(texel, 1.F / 256.F),
+          point_at(plane_, middle_.at),
+          normal_at(*triangle_, middle_.at, middle_.direction)};
+}
+
 SurfacePatch PixelSurface::quarter(std::size_t k) const {
   const Moment& moment = camera_->quarters[k];
   const TrianglePlane plane = triangle_->moves ? TrianglePlane(*triangle_, moment.time) : plane_;

@@ -54,6 +54,9 @@ class PixelSurface {
   /// For a pixel all of which shows the plane during the whole exposure.
   [[nodiscard]] SurfacePatch whole() const;
 
+  /// What the pixel's centre shows of the plane half way through the exposure.
+  [[nodiscard]] SurfacePatch center() const;
+
   /// What quarter k of the pixel shows of the plane at its moment.
   [[nodiscard]] SurfacePatch quarter(std::size_t k) const;
 

@@ -49,7 +49,7 @@ float motion_px(const Surfel& surfel,
 bool continuous(const Surfel& a, const Surfel& b) {
   if (a.hit.object != b.hit.object || a.material != b.material) return false;
   if (!a.hit.valid()) return true;
-  constexpr float kSameDirection = 0.9F;  // cosine
+  constexpr float kSameDirection = 0.6F;  // cosine
   if (a.normal.dot(b.normal) < kSameDirection) return false;
   // Off the other's tangent plane by less than the bend of the normals explains.
   const Eigen::Vector3f step = b.point - a.point;

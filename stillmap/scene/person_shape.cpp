@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
-constexpr float kCell_m = 0.0175F;
+constexpr float kCell_m = 0.021F;
 constexpr float kPi = 3.14159265F;
 
 struct PersonMaterials {
