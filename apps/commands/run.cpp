@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,6 +11,7 @@
 #include "apps/progress_bar.hpp"
 #include "stillmap/config/config_io.hpp"
 #include "stillmap/core/error.hpp"
+#include "stillmap/core/nearest_name.hpp"
 #include "stillmap/eval/ate.hpp"
 #include "stillmap/eval/rpe.hpp"
 #include "stillmap/io/atomic_file.hpp"
@@ -38,12 +40,19 @@ struct RunArguments {
   std::string groundtruth;
 };
 
+std::string checked_mode(const std::string& mode) {
+  const std::vector<std::string> modes = {"off", "mask", "paper", "full"};
+  if (std::ranges::find(modes, mode) != modes.end()) return mode;
+  throw Error("--dynamics {}: {}", mode, name_hint(mode, modes));
+}
+
 SystemConfig make_config(const RunArguments& arguments) {
   SystemConfig config;
   const std::vector<FieldRef> fields = list_fields(config);
   if (!arguments.config_file.empty()) load_yaml(fields, arguments.config_file);
   for (const std::string& setting : arguments.settings) set_value(fields, setting);
-  if (!arguments.dynamics.empty()) set_value(fields, "dynamics.mode=" + arguments.dynamics);
+  if (!arguments.dynamics.empty())
+    set_value(fields, "dynamics.mode=" + checked_mode(arguments.dynamics));
   config.check();
   return config;
 }
