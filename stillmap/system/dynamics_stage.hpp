@@ -17,7 +17,7 @@ namespace stillmap {
 struct DynamicsConfig {
   std::string mode = "full";
   double feature_margin_px = 4;
-  int compare_frames = 15;
+  int compare_frames = 20;
   bool fill_boxes = true;
   DynamicObjectsConfig objects;
   ObjectTrackerConfig tracker;
