@@ -10,19 +10,6 @@
 
 namespace stillmap {
 
-/// The area that two boxes share, 0 when they only touch.
-[[nodiscard]] inline double shared_area(const PixelBox& a, const PixelBox& b) {
-  const double width = std::min(a.x1, b.x1) - std::max(a.x0, b.x0);
-  const double height = std::min(a.y1, b.y1) - std::max(a.y0, b.y0);
-  return width > 0 && height > 0 ? width * height : 0.0;
-}
-
-/// Shared area over the area of both together, in [0, 1].
-[[nodiscard]] inline double box_iou(const PixelBox& a, const PixelBox& b) {
-  const double shared = shared_area(a, b);
-  return shared > 0 ? shared / (a.area() + b.area() - shared) : 0.0;
-}
-
 /// Fan 2020, Eq. (10): the box of a frame that lies `since_before` frames after one and
 /// `until_after` frames before another that have it. Both at least 1.
 [[nodiscard]] inline PixelBox box_between(const PixelBox& before,

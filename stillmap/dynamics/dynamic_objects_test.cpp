@@ -13,6 +13,7 @@
 
 #include "stillmap/dynamics/dynamics_test_support.hpp"
 #include "stillmap/dynamics/object_tracker.hpp"
+#include "stillmap/io/io_test_support.hpp"
 #include "stillmap/io/trajectory_io.hpp"
 
 namespace stillmap {
@@ -204,7 +205,7 @@ void print(const char* what, const Result& result) {
 
 TEST(DynamicObjects, CoverWhatMovesOnTruth) {
   for (const char* name : {"twin_walking_xyz", "fr1_xyz_walkers"}) {
-    const std::unique_ptr<TruthSequence> data = TruthSequence::open(name);
+    const std::unique_ptr<TruthSequence> data = TruthSequence::open(shared_data_folder() / name);
     if (!data) GTEST_SKIP() << "the shared test data is absent (set STILLMAP_DATA)";
     SCOPED_TRACE(name);
     const Result mask = run_on(*data, DynamicsMode::kMask);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -46,12 +45,7 @@ class TruthSequence {
   };
 
   /// Null where the data is absent.
-  [[nodiscard]] static std::unique_ptr<TruthSequence> open(const std::string& name) {
-    const char* variable = std::getenv("STILLMAP_DATA");
-    const std::filesystem::path data =
-        variable != nullptr ? std::filesystem::path(variable)
-                            : std::filesystem::path(STILLMAP_SOURCE_DIR) / ".." / "shared" / "data";
-    const std::filesystem::path folder = data / name;
+  [[nodiscard]] static std::unique_ptr<TruthSequence> open(const std::filesystem::path& folder) {
     if (!std::filesystem::is_directory(folder / "truth")) return nullptr;
     return std::unique_ptr<TruthSequence>(new TruthSequence(folder));
   }

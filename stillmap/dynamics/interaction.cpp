@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stillmap/dynamics/interaction.hpp"
 
-#include "stillmap/dynamics/boxes.hpp"
+#include "stillmap/detections/box_overlap.hpp"
 
 namespace stillmap {
 namespace {

@@ -12,6 +12,7 @@
 #include "stillmap/core/se3.hpp"
 #include "stillmap/dynamics/dynamics_test_support.hpp"
 #include "stillmap/dynamics/object_tracker.hpp"
+#include "stillmap/io/io_test_support.hpp"
 #include "stillmap/io/trajectory_io.hpp"
 
 namespace stillmap {
@@ -226,7 +227,7 @@ MotionScore score_motion(const TruthSequence& data) {
 
 TEST(MotionStates, TellPeopleWhoWalkFromWhatStandsOnTruth) {
   for (const char* name : {"twin_walking_xyz", "fr1_xyz_walkers"}) {
-    const std::unique_ptr<TruthSequence> data = TruthSequence::open(name);
+    const std::unique_ptr<TruthSequence> data = TruthSequence::open(shared_data_folder() / name);
     if (!data) GTEST_SKIP() << "the shared test data is absent (set STILLMAP_DATA)";
     const MotionScore score = score_motion(*data);
     const std::string what = fmt::format("{}: {} of {} who walk move, {} of {} that stand",

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "stillmap/core/error.hpp"
+#include "stillmap/detections/box_overlap.hpp"
 #include "stillmap/dynamics/boxes.hpp"
 
 namespace stillmap {

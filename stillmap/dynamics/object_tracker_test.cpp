@@ -8,8 +8,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "stillmap/detections/box_overlap.hpp"
 #include "stillmap/dynamics/boxes.hpp"
 #include "stillmap/dynamics/dynamics_test_support.hpp"
+#include "stillmap/io/io_test_support.hpp"
 
 namespace stillmap {
 namespace {
@@ -315,7 +317,7 @@ FillScore score_fills(const std::vector<FrameObjects>& out,
 // The boxes of the truth, with two of every seven frames taken away.
 TEST(ObjectTracker, FillsTheBoxesOfPeopleOnTruth) {
   for (const char* name : {"twin_walking_xyz", "fr1_xyz_walkers"}) {
-    const std::unique_ptr<TruthSequence> data = TruthSequence::open(name);
+    const std::unique_ptr<TruthSequence> data = TruthSequence::open(shared_data_folder() / name);
     if (!data) GTEST_SKIP() << "the shared test data is absent (set STILLMAP_DATA)";
     const std::vector<TruthSequence::Frame> truth = truth_frames(*data, 150);
     for (const FillRule rule : {FillRule::kBothWays, FillRule::kCausal}) {

@@ -8,6 +8,7 @@
 
 #include "stillmap/core/se3.hpp"
 #include "stillmap/eval/eval_test_support.hpp"
+#include "stillmap/io/io_test_support.hpp"
 #include "stillmap/io/trajectory_io.hpp"
 
 namespace stillmap {
@@ -69,7 +70,7 @@ TEST(AbsoluteTrajectoryError, IsNothingWithoutThreePairs) {
 }
 
 TEST(AbsoluteTrajectoryError, EqualsTheScriptOnPublishedTrajectories) {
-  const std::filesystem::path folder = published_folder();
+  const std::filesystem::path folder = published_folder(shared_data_folder());
   if (folder.empty()) GTEST_SKIP() << "no shared test data: set STILLMAP_DATA";
   for (const PublishedFigures& expected : kPublished) {
     SCOPED_TRACE(expected.name);

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <cstdlib>
 #include <filesystem>
 #include <functional>
 
@@ -27,12 +26,8 @@ inline constexpr std::array<PublishedFigures, 3> kPublished = {{
     {"fr3_sitting_static", 677, 0.005799, 0.004875, 0.004215, 0.003140, 649, 0.006830, 0.265777},
 }};
 
-/// The folder `trajectories` of the shared test data; empty where it is absent.
-[[nodiscard]] inline std::filesystem::path published_folder() {
-  const char* variable = std::getenv("STILLMAP_DATA");
-  const std::filesystem::path data =
-      variable != nullptr ? std::filesystem::path(variable)
-                          : std::filesystem::path(STILLMAP_SOURCE_DIR) / ".." / "shared" / "data";
+/// The folder `trajectories` of the shared test data `data`; empty where it is absent.
+[[nodiscard]] inline std::filesystem::path published_folder(const std::filesystem::path& data) {
   const std::filesystem::path folder = data / "trajectories";
   return std::filesystem::is_directory(folder) ? folder : std::filesystem::path();
 }

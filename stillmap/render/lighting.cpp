@@ -13,9 +13,7 @@ namespace {
 
 // Samples of a neighbourhood of 4 x 4 use different rays, so that smoothing over it sees them all.
 constexpr int kPattern = 4;
-constexpr int kStep = 3;  // pixels from one sample to the next
-constexpr int kRaysPerLamp = 1;
-constexpr int kRaysAround = 1;
+constexpr int kStep = 3;           // pixels from one sample to the next
 constexpr float kNearness = 0.6F;  // metres within which things darken corners
 constexpr float kOffSurface = 2e-3F;
 
@@ -28,7 +26,7 @@ Eigen::Vector2f spread_point(int i, int n) {
   return {(static_cast<float>(i) + 0.5F) / static_cast<float>(n), radical};
 }
 
-// The number of a sample's first ray among the pattern's rays: an order that looks random.
+// The number of a sample's ray among the pattern's rays: an order that looks random.
 int pattern_index(int x, int y) {
   constexpr std::array<int, kPattern * kPattern> kOrder{
       0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
@@ -50,14 +48,14 @@ Eigen::Vector3f direction_around(const Eigen::Vector3f& normal, const Eigen::Vec
          std::sqrt(1.F - at.y()) * normal;
 }
 
-// Rays that are traced when a packet is full; the share of those that get through is added up.
+// Rays that are traced when a packet is full; those that get through set their target to 1.
 class RayQueue {
  public:
   explicit RayQueue(const RayScene& scene) : scene_(&scene) {}
 
-  void add(const Ray& ray, float& sum, float share) {
+  void add(const Ray& ray, float& target) {
     rays_[count_] = ray;
-    targets_[count_] = {&sum, share};
+    targets_[count_] = &target;
     if (++count_ == kRays) flush();
   }
 
@@ -65,19 +63,15 @@ class RayQueue {
     if (count_ == 0) return;
     const std::uint32_t blocked = scene_->blocked({rays_.data(), count_});
     for (std::size_t i = 0; i < count_; ++i) {
-      if ((blocked >> i & 1U) == 0) *targets_[i].sum += targets_[i].share;
+      if ((blocked >> i & 1U) == 0) *targets_[i] = 1.F;
     }
     count_ = 0;
   }
 
  private:
-  struct Target {
-    float* sum;
-    float share;
-  };
   const RayScene* scene_;
   std::array<Ray, kRays> rays_;
-  std::array<Target, kRays> targets_{};
+  std::array<float*, kRays> targets_{};
   std::size_t count_ = 0;
 };
 
@@ -86,10 +80,30 @@ bool smooth_between(const Surfel& a, const Surfel& b) {
          std::abs(a.normal.dot(b.point - a.point)) < 0.05F;
 }
 
-void add_share(Openness& sum, const Openness& part, float weight) {
-  for (std::size_t i = 0; i < kMostLamps; ++i) sum.lamps[i] += weight * part.lamps[i];
-  sum.around += weight * part.around;
-}
+// The weighted mean of samples.
+class OpennessMean {
+ public:
+  void add(const Openness& part, float weight) {
+    add_share(sum_, part, weight);
+    weights_ += weight;
+  }
+
+  [[nodiscard]] Openness value_or(const Openness& otherwise) const {
+    if (weights_ <= 0) return otherwise;
+    Openness mean{{}, 0.F};
+    add_share(mean, sum_, 1.F / weights_);
+    return mean;
+  }
+
+ private:
+  static void add_share(Openness& sum, const Openness& part, float weight) {
+    for (std::size_t i = 0; i < kMostLamps; ++i) sum.lamps[i] += weight * part.lamps[i];
+    sum.around += weight * part.around;
+  }
+
+  Openness sum_{{}, 0.F};
+  float weights_ = 0.F;
+};
 
 }  // namespace
 
@@ -128,26 +142,20 @@ void Lighting::trace(const RayScene& scene, const World& world) {
     return Eigen::Vector3f(s.point + kOffSurface * s.normal);
   };
   for (std::size_t lamp = 0; lamp < world.lamps.size(); ++lamp) {
-    for (int k = 0; k < kRaysPerLamp; ++k) {
-      each_sample([&](Sample& sample, int spot) {
-        const Eigen::Vector2f at = spread_point(spot + k * kSpots, kRaysPerLamp * kSpots);
-        const Eigen::Vector3f origin = origin_of(*sample.surfel);
-        const Eigen::Vector3f direction = lamp_point(world.lamps[lamp], at) - origin;
-        if (direction.dot(sample.surfel->normal) <= 0) return;
-        // Not as far as the lamp's own panel.
-        queue.add({origin, direction, 0.98F}, sample.openness.lamps[lamp], 1.F / kRaysPerLamp);
-      });
-    }
-  }
-  for (int k = 0; k < kRaysAround; ++k) {
     each_sample([&](Sample& sample, int spot) {
-      const Eigen::Vector2f at = spread_point(spot + k * kSpots, kRaysAround * kSpots);
-      const Eigen::Vector3f direction = direction_around(sample.surfel->normal, at);
-      queue.add({origin_of(*sample.surfel), direction, kNearness},
-                sample.openness.around,
-                1.F / kRaysAround);
+      const Eigen::Vector3f origin = origin_of(*sample.surfel);
+      const Eigen::Vector3f direction =
+          lamp_point(world.lamps[lamp], spread_point(spot, kSpots)) - origin;
+      if (direction.dot(sample.surfel->normal) <= 0) return;
+      // Not as far as the lamp's own panel.
+      queue.add({origin, direction, 0.98F}, sample.openness.lamps[lamp]);
     });
   }
+  each_sample([&](Sample& sample, int spot) {
+    const Eigen::Vector3f direction =
+        direction_around(sample.surfel->normal, spread_point(spot, kSpots));
+    queue.add({origin_of(*sample.surfel), direction, kNearness}, sample.openness.around);
+  });
   queue.flush();
 }
 
@@ -158,44 +166,33 @@ void Lighting::smooth(int dx, int dy) {
   for (int y = 0; y < height_; ++y) {
     for (int x = 0; x < width_; ++x) {
       const Surfel& here = *sample_at(x, y).surfel;
-      Openness sum{{}, 0.F};
-      float weights = 0.F;
+      OpennessMean mean;
       for (int k = -2; k <= 2; ++k) {
         const int nx = x + k * dx, ny = y + k * dy;
         if (nx < 0 || ny < 0 || nx >= width_ || ny >= height_) continue;
         const Sample& near = sample_at(nx, ny);
         if (!smooth_between(here, *near.surfel)) continue;
-        const float weight = kWeights[static_cast<std::size_t>(k + 2)];
-        add_share(sum, near.openness, weight);
-        weights += weight;
+        mean.add(near.openness, kWeights[static_cast<std::size_t>(k + 2)]);
       }
-      if (weights <= 0) continue;
       Openness& target = smoothed[static_cast<std::size_t>(y * width_ + x)].openness;
-      target = Openness{{}, 0.F};
-      add_share(target, sum, 1.F / weights);
+      target = mean.value_or(target);
     }
   }
   samples_ = std::move(smoothed);
 }
 
 Openness Lighting::openness_at(int x, int y, const Surfel& surfel) const {
-  Openness sum{{}, 0.F};
-  float weights = 0.F;
+  OpennessMean mean;
   const int left = x / kStep, top = y / kStep;
   for (int ny = top; ny <= std::min(top + 1, height_ - 1); ++ny) {
     for (int nx = left; nx <= std::min(left + 1, width_ - 1); ++nx) {
       const Sample& near = sample_at(nx, ny);
       if (!smooth_between(surfel, *near.surfel)) continue;
       const int right = std::abs(x - kStep * nx), below = std::abs(y - kStep * ny);
-      const float weight = static_cast<float>((kStep - right) * (kStep - below)) + 1e-3F;
-      add_share(sum, near.openness, weight);
-      weights += weight;
+      mean.add(near.openness, static_cast<float>((kStep - right) * (kStep - below)) + 1e-3F);
     }
   }
-  if (weights <= 0) return sample_at(left, top).openness;
-  Openness mean{{}, 0.F};
-  add_share(mean, sum, 1.F / weights);
-  return mean;
+  return mean.value_or(sample_at(left, top).openness);
 }
 
 float light_on(const World& world,

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <optional>
 
-#include "stillmap/core/error.hpp"
 #include "stillmap/render/shading.hpp"
 #include "stillmap/render/surface_buffer.hpp"
 

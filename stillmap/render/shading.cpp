@@ -69,14 +69,13 @@ Eigen::Vector3f surface_motion(const SurfaceTriangle& t, const Eigen::Vector2f& 
 }  // namespace
 
 MovingCamera::MovingCamera(const Exposure& exposure)
-    : open(moment_at(exposure, 0.0)),
-      middle{exposure.T_world_camera.linear().cast<float>(),
+    : middle{exposure.T_world_camera.linear().cast<float>(),
              exposure.T_world_camera.translation().cast<float>(),
              0.5F},
-      close(moment_at(exposure, 1.0)),
-      translation(close.origin - open.origin),
-      turn(close.R_world_camera - open.R_world_camera),
       moves(exposure.T_world_camera_open.matrix() != exposure.T_world_camera_close.matrix()) {
+  const Moment open = moment_at(exposure, 0.0), close = moment_at(exposure, 1.0);
+  translation = close.origin - open.origin;
+  turn = close.R_world_camera - open.R_world_camera;
   for (std::size_t k = 0; k < 4; ++k) {
     const float time = kMoments[kQuarterMoments[k]];
     quarters[k] = moves ? moment_at(exposure, time) : middle;
@@ -125,17 +124,17 @@ SurfacePatch PixelSurface::whole() const {
 }
 
 SurfacePatch PixelSurface::center() const {
-  const Eigen::Vector2f uv = uv_at(*triangle_, middle_.at);
-  const TexelSum texel = material_->texture.sample({uv.x(), uv.y()}, level_, material_->repeats);
-  return {to_color(texel, 1.F / 256.F),
-          point_at(plane_, middle_.at),
-          normal_at(*triangle_, middle_.at, middle_.direction)};
+  return patch_at(plane_, middle_);
 }
 
 SurfacePatch PixelSurface::quarter(std::size_t k) const {
   const Moment& moment = camera_->quarters[k];
   const TrianglePlane plane = triangle_->moves ? TrianglePlane(*triangle_, moment.time) : plane_;
-  const PlaneMeeting meeting(plane, moment.origin, moment.R_world_camera * rays_->quarters[k]);
+  return patch_at(plane,
+                  PlaneMeeting(plane, moment.origin, moment.R_world_camera * rays_->quarters[k]));
+}
+
+SurfacePatch PixelSurface::patch_at(const TrianglePlane& plane, const PlaneMeeting& meeting) const {
   const Eigen::Vector2f uv = uv_at(*triangle_, meeting.at);
   const TexelSum texel = material_->texture.sample({uv.x(), uv.y()}, level_, material_->repeats);
   return {to_color(texel, 1.F / 256.F),

@@ -28,8 +28,8 @@ class MovingCamera {
   };
   /// When a pixel's quarters are taken.
   std::array<Moment, 4> quarters;
-  Moment open, middle, close;
-  Eigen::Vector3f translation;  ///< from open to close
+  Moment middle;
+  Eigen::Vector3f translation;  ///< while the shutter is open
   Eigen::Matrix3f turn;         ///< the difference of the axes
   bool moves = false;
 };
@@ -60,9 +60,11 @@ class PixelSurface {
   /// What quarter k of the pixel shows of the plane at its moment.
   [[nodiscard]] SurfacePatch quarter(std::size_t k) const;
 
-  [[nodiscard]] const Material& material() const { return *material_; }
-
  private:
+  /// What one ray shows of the plane, as it is at the ray's time.
+  [[nodiscard]] SurfacePatch patch_at(const TrianglePlane& plane,
+                                      const PlaneMeeting& meeting) const;
+
   const SurfaceTriangle* triangle_;
   const Material* material_;
   const MovingCamera* camera_;

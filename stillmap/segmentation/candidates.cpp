@@ -5,6 +5,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "stillmap/detections/box_overlap.hpp"
+
 namespace stillmap {
 namespace {
 
@@ -23,13 +25,6 @@ bool better(const Candidate& a, const Candidate& b) {
 
 }  // namespace
 
-double overlap(const PixelBox& a, const PixelBox& b) {
-  const double width = std::min(a.x1, b.x1) - std::max(a.x0, b.x0);
-  const double height = std::min(a.y1, b.y1) - std::max(a.y0, b.y0);
-  if (width <= 0 || height <= 0) return 0;
-  return width * height / (a.area() + b.area() - width * height);
-}
-
 std::vector<Candidate> suppress_overlaps(std::vector<Candidate> candidates, double max_overlap) {
   std::erase_if(candidates, [](const Candidate& candidate) { return !usable(candidate); });
   std::ranges::sort(candidates, better);
@@ -37,7 +32,7 @@ std::vector<Candidate> suppress_overlaps(std::vector<Candidate> candidates, doub
   std::vector<Candidate> kept;
   for (const Candidate& candidate : candidates) {
     const bool repeats = std::ranges::any_of(kept, [&](const Candidate& other) {
-      return other.label == candidate.label && overlap(other.box, candidate.box) > max_overlap;
+      return other.label == candidate.label && box_iou(other.box, candidate.box) > max_overlap;
     });
     if (!repeats) kept.push_back(candidate);
   }

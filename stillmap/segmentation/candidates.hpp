@@ -21,9 +21,6 @@ struct Candidate {
   bool operator==(const Candidate&) const = default;
 };
 
-/// Overlap of two boxes: area of the intersection over area of the union; 0 when apart.
-[[nodiscard]] double overlap(const PixelBox& a, const PixelBox& b);
-
 /// Of candidates of one class that overlap by more than `max_overlap` only the best stays. The
 /// result is sorted by score, the best first, then by source and label. Candidates with a box that
 /// is empty or not finite, or a score that is no number, are dropped; of the rest at most the best

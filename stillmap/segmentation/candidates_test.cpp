@@ -8,16 +8,18 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "stillmap/detections/box_overlap.hpp"
+
 namespace stillmap {
 namespace {
 
 TEST(Overlap, ByHand) {
   const PixelBox box{0, 0, 4, 2};
-  EXPECT_DOUBLE_EQ(overlap(box, box), 1);
-  EXPECT_DOUBLE_EQ(overlap(box, {2, 0, 6, 2}), 4.0 / 12);
-  EXPECT_DOUBLE_EQ(overlap(box, {1, 1, 2, 4}), 1.0 / 10);
-  EXPECT_DOUBLE_EQ(overlap(box, {4, 0, 6, 2}), 0);
-  EXPECT_DOUBLE_EQ(overlap(box, {9, 9, 10, 10}), 0);
+  EXPECT_DOUBLE_EQ(box_iou(box, box), 1);
+  EXPECT_DOUBLE_EQ(box_iou(box, {2, 0, 6, 2}), 4.0 / 12);
+  EXPECT_DOUBLE_EQ(box_iou(box, {1, 1, 2, 4}), 1.0 / 10);
+  EXPECT_DOUBLE_EQ(box_iou(box, {4, 0, 6, 2}), 0);
+  EXPECT_DOUBLE_EQ(box_iou(box, {9, 9, 10, 10}), 0);
 }
 
 TEST(SuppressOverlaps, BestOfEachClassStays) {
@@ -67,7 +69,7 @@ TEST(SuppressOverlaps, PropertiesOnRandomBoxes) {
     const bool stayed = std::ranges::find(kept, candidate) != kept.end();
     const bool beaten = std::ranges::any_of(kept, [&](const Candidate& other) {
       return other.source != candidate.source && other.label == candidate.label &&
-             other.score >= candidate.score && overlap(other.box, candidate.box) > 0.4;
+             other.score >= candidate.score && box_iou(other.box, candidate.box) > 0.4;
     });
     EXPECT_NE(stayed, beaten);
   }

@@ -11,10 +11,10 @@
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 
+#include "stillmap/detections/box_overlap.hpp"
 #include "stillmap/detections/detections_io.hpp"
 #include "stillmap/io/image_io.hpp"
 #include "stillmap/io/io_test_support.hpp"
-#include "stillmap/segmentation/candidates.hpp"
 #include "stillmap/segmentation/model_folder.hpp"
 #include "stillmap/segmentation/onnx_runtime.hpp"
 
@@ -210,7 +210,7 @@ TEST_F(FetchedNetworks, FindPeopleInPhotographs) {
     const FrameDetections frame = segmenter->segment(photo(stamp), {1, stamp});
     for (const PixelBox& person : {PixelBox{40, 200, 235, 478}, PixelBox{330, 275, 595, 475}}) {
       found += std::ranges::any_of(frame.objects, [&](const DetectedObject& object) {
-        return object.class_name == "person" && overlap(object.box, person) > 0.5 &&
+        return object.class_name == "person" && box_iou(object.box, person) > 0.5 &&
                cv::countNonZero(frame.mask.mat == object.id) > 0.2 * object.box.area();
       });
     }

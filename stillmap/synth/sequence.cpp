@@ -6,9 +6,9 @@
 #include <set>
 
 #include <fmt/format.h>
-#include <opencv2/imgproc.hpp>
 
 #include "stillmap/core/error.hpp"
+#include "stillmap/io/image_io.hpp"
 #include "stillmap/scene/office.hpp"
 
 namespace stillmap {
@@ -24,14 +24,6 @@ double mean_distance(const std::vector<Eigen::Vector3f>& a, const std::vector<Ei
   double sum = 0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += (b[i] - a[i]).norm();
   return a.empty() ? 0.0 : sum / static_cast<double>(a.size());
-}
-
-std::vector<Eigen::Vector3f> moved(const std::vector<Eigen::Vector3f>& points,
-                                   const Eigen::Isometry3d& T) {
-  std::vector<Eigen::Vector3f> result;
-  result.reserve(points.size());
-  for (const Eigen::Vector3f& p : points) result.push_back((T * p.cast<double>()).cast<float>());
-  return result;
 }
 
 bool all_in(const std::vector<Person>& people, const std::set<int>& ids) {
@@ -53,6 +45,25 @@ CameraModel synthetic_camera(int width_px, int height_px) {
   camera.cx = (original.cx + 0.5) * x_scale - 0.5;
   camera.cy = 0.5 * height_px + y_offset * x_scale - 0.5;
   return camera;
+}
+
+std::vector<MovableSurface> movable_surfaces(const World& world, const WorldState& state) {
+  std::vector<MovableSurface> surfaces;
+  for (std::size_t i = 0; i < world.things.size(); ++i) {
+    const Thing& thing = world.things[i];
+    if (thing.id == 0) continue;
+    MovableSurface surface{thing.id, {}};
+    surface.p_world.reserve(thing.mesh.positions.size());
+    for (const Eigen::Vector3f& p : thing.mesh.positions) {
+      surface.p_world.push_back((state.T_world_things[i] * p.cast<double>()).cast<float>());
+    }
+    surfaces.push_back(std::move(surface));
+  }
+  for (std::size_t i = 0; i < world.people.size(); ++i) {
+    const Person& person = world.people[i];
+    surfaces.push_back({person.id, person.body.posed(state.people[i]).positions});
+  }
+  return surfaces;
 }
 
 SyntheticSequence::SyntheticSequence(const SyntheticOptions& options)
@@ -104,7 +115,7 @@ SyntheticFrame SyntheticSequence::render(FrameId id) const {
   frame.depth_stamp_s = frame.stamp.seconds;
   frame.color = measured.color;
   frame.depth = measured.depth;
-  cv::cvtColor(measured.color.mat, frame.gray.mat, cv::COLOR_RGB2GRAY);
+  frame.gray = to_gray(measured.color);
   return {std::make_shared<const RgbdFrame>(std::move(frame)), perfect};
 }
 
@@ -120,20 +131,12 @@ Trajectory SyntheticSequence::ground_truth() const {
 std::vector<ObjectSpeed> SyntheticSequence::speeds(FrameId id) const {
   const double step = 0.5 / options_.frames_per_second;
   const double from = std::max(0.0, time_s(id) - step), to = time_s(id) + step;
-  const WorldState before = choreography_.at(from), after = choreography_.at(to);
+  const std::vector<MovableSurface> before = movable_surfaces(*world_, choreography_.at(from));
+  const std::vector<MovableSurface> after = movable_surfaces(*world_, choreography_.at(to));
   std::vector<ObjectSpeed> speeds;
-  for (std::size_t i = 0; i < world_->things.size(); ++i) {
-    const Thing& thing = world_->things[i];
-    if (thing.id == 0) continue;
-    const double distance = mean_distance(moved(thing.mesh.positions, before.T_world_things[i]),
-                                          moved(thing.mesh.positions, after.T_world_things[i]));
-    speeds.push_back({thing.id, distance / (to - from)});
-  }
-  for (std::size_t i = 0; i < world_->people.size(); ++i) {
-    const Person& person = world_->people[i];
-    const double distance = mean_distance(person.body.posed(before.people[i]).positions,
-                                          person.body.posed(after.people[i]).positions);
-    speeds.push_back({person.id, distance / (to - from)});
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const double distance = mean_distance(before[i].p_world, after[i].p_world);
+    speeds.push_back({before[i].id, distance / (to - from)});
   }
   return speeds;
 }

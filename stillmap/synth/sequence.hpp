@@ -39,6 +39,16 @@ struct SyntheticFrame {
   RenderedImage truth;  ///< without the sensor's faults
 };
 
+/// The corners of something that can move, where it is at one time.
+struct MovableSurface {
+  std::uint8_t id = 0;
+  std::vector<Eigen::Vector3f> p_world;
+};
+
+/// The surfaces of all that can move: things by their order in the world, then people.
+[[nodiscard]] std::vector<MovableSurface> movable_surfaces(const World& world,
+                                                           const WorldState& state);
+
 /// A sequence in the office of make_office() along a path, with exact truth. Frames are rendered
 /// when asked for; asking for the same frame twice gives equal bytes. Safe to use from several
 /// threads.
@@ -67,8 +77,8 @@ class SyntheticSequence {
   /// Where everything is in frame `id`.
   [[nodiscard]] WorldState state(FrameId id) const;
 
-  /// How fast what can move is in frame `id`, as the mean over its corners: things by their order
-  /// in world(), then people.
+  /// How fast what can move is in frame `id`, as the mean over its corners; in the order of
+  /// movable_surfaces().
   [[nodiscard]] std::vector<ObjectSpeed> speeds(FrameId id) const;
 
   /// The ids of what moves in any frame, ascending.

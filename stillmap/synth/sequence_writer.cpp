@@ -69,29 +69,12 @@ struct WrittenFrame {
   TruthFrame objects;
 };
 
-std::vector<Eigen::Vector3f> surface_of(const Thing& thing,
-                                        const Eigen::Isometry3d& T_world_thing) {
-  std::vector<Eigen::Vector3f> points;
-  points.reserve(thing.mesh.positions.size());
-  const Eigen::Isometry3f T = T_world_thing.cast<float>();
-  for (const Eigen::Vector3f& p : thing.mesh.positions) points.push_back(T * p);
-  return points;
-}
-
 // Which share of each object that can move is within the image, in the order of speeds().
 std::vector<double> visible_shares(const SyntheticSequence& sequence, FrameId id) {
-  const World& world = sequence.world();
-  const WorldState state = sequence.state(id);
   const Eigen::Isometry3d T_world_camera = sequence.pose(id);
   std::vector<double> shares;
-  const auto add = [&](const std::vector<Eigen::Vector3f>& surface) {
-    shares.push_back(share_in_view(surface, sequence.camera(), T_world_camera));
-  };
-  for (std::size_t i = 0; i < world.things.size(); ++i) {
-    if (world.things[i].id != 0) add(surface_of(world.things[i], state.T_world_things[i]));
-  }
-  for (std::size_t i = 0; i < world.people.size(); ++i) {
-    add(world.people[i].body.posed(state.people[i]).positions);
+  for (const MovableSurface& surface : movable_surfaces(sequence.world(), sequence.state(id))) {
+    shares.push_back(share_in_view(surface.p_world, sequence.camera(), T_world_camera));
   }
   return shares;
 }

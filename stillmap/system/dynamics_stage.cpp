@@ -72,7 +72,8 @@ std::vector<PreviousDepth> DynamicsStage::previous(
   if (config_.mode == "paper" && last_) frames.push_back({last_->depth});
   if (config_.mode != "full" || !T_world_camera || past_.empty()) return frames;
   const auto add = [&](const PastFrame& past) {
-    frames.push_back({past.depth, T_world_camera->inverse() * past.T_world_camera, past.dynamic});
+    frames.push_back(
+        {past.view.depth, T_world_camera->inverse() * past.view.T_world_camera, past.dynamic});
   };
   for (const int age : {1, 2, 4}) {
     const PastFrame* past = past_frame(std::int64_t{age} * config_.compare_frames);
@@ -119,10 +120,11 @@ void DynamicsStage::remember(const RgbdFrame& frame,
                              FrameDynamics& dynamics) {
   dynamics.motions =
       motions_.update(dynamics.objects, frame.depth, dynamics.judged.states, T_world_camera);
-  last_ = PastFrame{frame.depth, covered(dynamics.judged.mask), T_world_camera, number_++};
+  last_ = {frame.depth, T_world_camera};
   // A third of the age's precision is enough, and a third of the memory.
   const int step = std::max(1, config_.compare_frames / 3);
-  if (last_->number % step == 0) past_.push_back(*last_);
+  if (number_ % step == 0) past_.push_back({*last_, covered(dynamics.judged.mask), number_});
+  ++number_;
   const std::int64_t oldest = number_ - std::int64_t{4} * config_.compare_frames - step;
   while (!past_.empty() && past_.front().number < oldest) past_.pop_front();
 }

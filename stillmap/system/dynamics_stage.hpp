@@ -97,10 +97,13 @@ class DynamicsStage {
   }
 
  private:
-  struct PastFrame {
+  struct PastView {
     DepthImage depth;
-    cv::Mat1b dynamic;
     Eigen::Isometry3d T_world_camera;
+  };
+  struct PastFrame {
+    PastView view;
+    cv::Mat1b dynamic;
     std::int64_t number;
   };
   [[nodiscard]] std::vector<PreviousDepth> previous(
@@ -111,7 +114,7 @@ class DynamicsStage {
   std::optional<DynamicObjects> objects_;
   MotionStates motions_;
   std::optional<FeatureSifter> sifter_;
-  std::optional<PastFrame> last_;
+  std::optional<PastView> last_;
   std::deque<PastFrame> past_;  // some of those before, the newest last
   std::int64_t number_ = 0;     // of frames remembered
   FeaturesPtr features_;        // of the last frame, as they were extracted
