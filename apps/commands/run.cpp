@@ -37,6 +37,7 @@ struct RunArguments {
   std::string frames;
   std::size_t stride = 1;
   int threads = 2;
+  bool live = false;
   std::string groundtruth;
 };
 
@@ -115,6 +116,7 @@ int run(const RunArguments& arguments) {
   if (!arguments.frames.empty()) options.frames = parse_frames(arguments.frames);
   options.frames.stride = arguments.stride;
   options.threads = arguments.threads;
+  options.live = arguments.live;
   ProgressBar progress("frames");
   options.on_progress = [&](std::size_t done, std::size_t total) { progress.show(done, total); };
   options.on_warning = [&](const std::string& warning) { progress.warn(warning); };
@@ -161,6 +163,9 @@ void add_settings(CLI::App& command, RunArguments& arguments) {
   command.add_option("--dynamics",
                      arguments.dynamics,
                      "what is done about what moves: off, mask, paper or full; as dynamics.mode");
+  command.add_flag("--live",
+                   arguments.live,
+                   "look at no later frame: what a network misses is carried on from earlier ones");
   command.add_option("--threads", arguments.threads, "1 or more; the result is the same")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();

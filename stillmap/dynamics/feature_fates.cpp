@@ -34,12 +34,27 @@ PointMatch point_match(const Features& previous, const Features& current, const 
           static_cast<double>(current.sensor_depth_m[m.feature])};
 }
 
+// Where people fill the image nearly all features are in boxes; to drop those as well that only
+// have no match in the frame before, as every new one, loses the camera.
+FeatureFate in_box(const std::optional<MatchVerdict>& verdict) {
+  switch (verdict.value_or(MatchVerdict::kUnknown)) {
+    case MatchVerdict::kStatic:
+      return FeatureFate::kStaticInBox;
+    case MatchVerdict::kDynamic:
+      return FeatureFate::kDynamic;
+    case MatchVerdict::kUnknown:
+      break;
+  }
+  return FeatureFate::kStable;
+}
+
 }  // namespace
 
 FeatureSifter::FeatureSifter(const FeatureFatesConfig& config,
                              const CameraModel& camera,
-                             DynamicsMode mode)
-    : config_(config), camera_(camera), mode_(mode) {
+                             DynamicsMode mode,
+                             std::uint32_t seed)
+    : config_(config), camera_(camera), mode_(mode), seed_(seed) {
   if (mode == DynamicsMode::kPaper) {
     config_.depth_stability.relative = false;
     config_.depth_stability.rejected = "drop";
@@ -109,7 +124,7 @@ std::vector<std::optional<MatchVerdict>> FeatureSifter::judge_boxes(
     if (boxed[match.feature] != 0) continue;
     environment.push_back(point_match(*scene.previous, scene.features, match));
   }
-  std::mt19937 rng = rng_for(0, scene.frame, RandomPurpose::kEpipolarGeometry);
+  std::mt19937 rng = rng_for(seed_, scene.frame, RandomPurpose::kEpipolarGeometry);
   const TwoViewGeometry geometry = estimate_two_view(
       camera_, environment, scene.T_current_previous, config_.static_matches, rng);
   for (const FeatureMatch& match : matches) {
@@ -120,14 +135,6 @@ std::vector<std::optional<MatchVerdict>> FeatureSifter::judge_boxes(
                                           config_.static_matches);
   }
   return verdicts;
-}
-
-FeatureFate FeatureSifter::in_box(const std::optional<MatchVerdict>& verdict) const {
-  const MatchVerdict known = verdict.value_or(MatchVerdict::kUnknown);
-  if (known == MatchVerdict::kStatic) return FeatureFate::kStaticInBox;
-  if (known == MatchVerdict::kDynamic) return FeatureFate::kDynamic;
-  const bool kept = mode_ == DynamicsMode::kFull || config_.static_matches.keep_unmatched;
-  return kept ? FeatureFate::kStable : FeatureFate::kDynamic;
 }
 
 bool FeatureSifter::dropped(FeatureFate fate) const {

@@ -63,11 +63,15 @@ struct FeatureFatesConfig {
 };
 
 /// Judges features by their depth and, in the boxes of what moves, by their motion: sections 6 and
-/// 7 of the method. kMask judges nothing; kPaper drops what is not proven, kFull only what is
-/// proven to move. Keeps nothing between frames; the same input gives the same bits.
+/// 7 of the method. kMask judges nothing, kPaper all; kFull leaves the boxes alone unless told to
+/// judge them, and keeps features without depth. A feature in a box that has no match in the frame
+/// before stays. Keeps nothing between frames; the same input and seed give the same bits.
 class FeatureSifter {
  public:
-  FeatureSifter(const FeatureFatesConfig& config, const CameraModel& camera, DynamicsMode mode);
+  FeatureSifter(const FeatureFatesConfig& config,
+                const CameraModel& camera,
+                DynamicsMode mode,
+                std::uint32_t seed);
 
   [[nodiscard]] SiftedFeatures sift(const FeatureScene& scene) const;
 
@@ -75,13 +79,13 @@ class FeatureSifter {
   [[nodiscard]] std::vector<FeatureFate> judge(const FeatureScene& scene) const;
   [[nodiscard]] std::vector<std::optional<MatchVerdict>> judge_boxes(
       const FeatureScene& scene, const std::vector<std::uint8_t>& boxed) const;
-  [[nodiscard]] FeatureFate in_box(const std::optional<MatchVerdict>& verdict) const;
   [[nodiscard]] bool dropped(FeatureFate fate) const;
   [[nodiscard]] bool without_depth(FeatureFate fate) const;
 
   FeatureFatesConfig config_;
   CameraModel camera_;
   DynamicsMode mode_;
+  std::uint32_t seed_;
 };
 
 }  // namespace stillmap

@@ -25,15 +25,11 @@ struct StaticMatchesConfig {
   int iterations = 200;
   double search_px = 20;
   bool in_full = false;
-  bool keep_unmatched = false;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("enabled", self.enabled, FieldInfo{"judge matches in the boxes of what moves"});
     visit("in_full", self.in_full, FieldInfo{"full: judge them as well"});
-    visit("keep_unmatched",
-          self.keep_unmatched,
-          FieldInfo{"paper: use features in the boxes that nothing is known of"});
     visit(
         "epipolar_px",
         self.epipolar_px,

@@ -10,8 +10,12 @@
 namespace stillmap {
 namespace {
 
-constexpr std::array<FateStyle, 2> kStyles = {
+constexpr std::array<FateStyle, 6> kStyles = {
     {{SampleFate::kUntracked, "found but not tracked", 2, {165, 165, 165}},
+     {SampleFate::kMissingDepth, "with depth missing", 2, {70, 160, 255}},
+     {SampleFate::kDepthJump, "at a jump of depth", 2, {255, 150, 0}},
+     {SampleFate::kDynamic, "dynamic", 3, {255, 60, 200}},
+     {SampleFate::kStaticInBox, "static in the box of something dynamic", 3, {0, 230, 255}},
      {SampleFate::kTracked, "tracked", 3, {40, 255, 110}}}};
 
 cv::Scalar scalar(Rgb color) {

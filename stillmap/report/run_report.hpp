@@ -34,8 +34,12 @@ struct StageTimes {
 
 /// What became of a feature.
 enum class SampleFate : std::uint8_t {
-  kUntracked,  ///< found, but not matched
-  kTracked,    ///< matched to the map
+  kUntracked,     ///< of stable depth, but not matched
+  kTracked,       ///< of stable depth and matched to the map
+  kMissingDepth,  ///< a pixel round it has no depth
+  kDepthJump,     ///< depth changes suddenly round it
+  kStaticInBox,   ///< in the box of something dynamic, and seen to stand still
+  kDynamic,       ///< in such a box, and seen to move
 };
 
 struct SampleFeature {

@@ -50,17 +50,37 @@ SampleObject make_sample_object(const TrackedObject& object, const ObjectState& 
                                         Eigen::Vector2d(box.x1, box.y1))};
 }
 
+SampleFate sample_fate(FeatureFate fate, bool tracked) {
+  switch (fate) {
+    case FeatureFate::kMissingDepth:
+      return SampleFate::kMissingDepth;
+    case FeatureFate::kUnstableDepth:
+      return SampleFate::kDepthJump;
+    case FeatureFate::kDynamic:
+      return SampleFate::kDynamic;
+    case FeatureFate::kStaticInBox:
+      return SampleFate::kStaticInBox;
+    case FeatureFate::kStable:
+      break;
+  }
+  return tracked ? SampleFate::kTracked : SampleFate::kUntracked;
+}
+
 SampleFrame make_sample(const RgbdFrame& frame, const FrameResult& result) {
   SampleFrame sample;
   sample.stamp = frame.stamp;
   sample.image = frame.color;
   const TrackedFrame& tracked = result.tracked;
-  for (std::size_t i = 0; i < tracked.landmarks.size(); ++i) {
-    sample.features.push_back(
-        {tracked.features->raw_px[i],
-         tracked.landmarks[i].valid() ? SampleFate::kTracked : SampleFate::kUntracked});
-  }
   const FrameDynamics& dynamics = result.dynamics;
+  for (std::size_t i = 0; i < tracked.landmarks.size(); ++i) {
+    // Without dynamics no feature is judged.
+    const FeatureFate fate = dynamics.fates.empty() ? FeatureFate::kStable : dynamics.fates[i];
+    sample.features.push_back(
+        {tracked.features->raw_px[i], sample_fate(fate, tracked.landmarks[i].valid())});
+  }
+  for (const FatedFeature& feature : dynamics.dropped) {
+    sample.features.push_back({feature.raw_px, sample_fate(feature.fate, false)});
+  }
   for (std::size_t i = 0; i < dynamics.judged.states.size(); ++i) {
     sample.objects.push_back(
         make_sample_object(dynamics.objects.objects[i], dynamics.judged.states[i]));
@@ -153,7 +173,9 @@ SequenceRun run_sequence(const TumSequence& sequence,
     ++done;
     if (options.on_progress) options.on_progress(done, frames.size());
   };
-  ObjectSource objects(options.segmenter, config.dynamics.object_tracking(), FillRule::kBothWays);
+  ObjectSource objects(options.segmenter,
+                       config.dynamics.object_tracking(),
+                       options.live ? FillRule::kCausal : FillRule::kBothWays);
   Stopwatch waiting;
   while (std::optional<SourcedFrame> next = source.next()) {
     add_stage_time(report.stages, "reading", waiting.lap_ms());

@@ -26,6 +26,7 @@ struct FrameSelection {
 struct RunOptions {
   FrameSelection frames;
   int threads = 2;
+  bool live = false;  ///< no frame waits for later ones: what a network misses is carried forward
   const Segmenter* segmenter = nullptr;  ///< what finds objects; none where null
   std::function<void(std::size_t done, std::size_t total)> on_progress;  ///< may be empty
   std::function<void(const std::string&)> on_warning;                    ///< may be empty

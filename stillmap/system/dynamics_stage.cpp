@@ -51,11 +51,13 @@ ObjectTrackerConfig DynamicsConfig::object_tracking() const {
   return tracking;
 }
 
-DynamicsStage::DynamicsStage(const DynamicsConfig& config, const CameraModel& camera)
+DynamicsStage::DynamicsStage(const DynamicsConfig& config,
+                             const CameraModel& camera,
+                             std::uint32_t seed)
     : config_(config), motions_(config.motion, camera) {
   if (config.mode == "off") return;
   objects_.emplace(config.objects, camera, mode_of(config));
-  sifter_.emplace(config.features, camera, mode_of(config));
+  sifter_.emplace(config.features, camera, mode_of(config), seed);
 }
 
 // The newest frame that is at least so old.

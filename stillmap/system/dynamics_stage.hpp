@@ -65,7 +65,7 @@ struct FrameDynamics {
 /// takes to say so of the next.
 class DynamicsStage {
  public:
-  DynamicsStage(const DynamicsConfig& config, const CameraModel& camera);
+  DynamicsStage(const DynamicsConfig& config, const CameraModel& camera, std::uint32_t seed);
 
   /// Whether there is anything to do: the mode is not "off".
   [[nodiscard]] bool enabled() const { return objects_.has_value(); }

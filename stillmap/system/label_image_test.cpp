@@ -60,7 +60,7 @@ FrameDynamics judged(const Scene& scene) {
   config.mode = "full";
   RgbdFrame frame;
   frame.depth = scene.depth;
-  return DynamicsStage(config, synthetic_camera(320, 240))
+  return DynamicsStage(config, synthetic_camera(320, 240), 0)
       .judge(frame, scene.objects, std::nullopt);
 }
 

@@ -26,7 +26,7 @@ System::System(const SystemConfig& config, const CameraModel& camera, int thread
     : config_(checked(config)),
       camera_(camera),
       rays_(pixel_rays(camera)),
-      dynamics_(config.dynamics, camera),
+      dynamics_(config.dynamics, camera, config.seed),
       extractor_(config.tracking.orb, camera),
       measure_(config.measurement, extractor_.level_scales()),
       map_(extractor_.level_scales()),
