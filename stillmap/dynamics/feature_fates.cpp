@@ -34,9 +34,12 @@ PointMatch point_match(const Features& previous, const Features& current, const 
           static_cast<double>(current.sensor_depth_m[m.feature])};
 }
 
-// Where people fill the image nearly all features are in boxes; to drop those as well that only
-// have no match in the frame before, as every new one, loses the camera.
-FeatureFate in_box(const std::optional<MatchVerdict>& verdict) {
+using Verdicts = std::vector<std::optional<MatchVerdict>>;
+
+/// What is seen in a box of something dynamic. Without a verdict, as every new feature is, it
+/// stays: where people fill the image nearly all features are in boxes, and to drop those would
+/// lose the camera.
+FeatureFate fate_in_box(const std::optional<MatchVerdict>& verdict) {
   switch (verdict.value_or(MatchVerdict::kUnknown)) {
     case MatchVerdict::kStatic:
       return FeatureFate::kStaticInBox;
@@ -93,9 +96,9 @@ std::vector<FeatureFate> FeatureSifter::judge(const FeatureScene& scene) const {
   std::vector<FeatureFate> fates(scene.features.size(), FeatureFate::kStable);
   if (config_.static_matches.enabled) {
     const std::vector<std::uint8_t> boxed = boxed_features(scene);
-    const std::vector<std::optional<MatchVerdict>> verdicts = judge_boxes(scene, boxed);
+    const Verdicts verdicts = judge_boxes(scene, boxed);
     for (std::size_t i = 0; i < fates.size(); ++i) {
-      if (boxed[i] != 0) fates[i] = in_box(verdicts[i]);
+      if (boxed[i] != 0) fates[i] = fate_in_box(verdicts[i]);
     }
   }
   if (!config_.depth_stability.enabled) return fates;

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: Apache-2.0
+// What each stage of the dynamics gives: without it, the same frames give a worse trajectory. Each
+// meets the fault that it is there for, and no other stage helps.
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <initializer_list>
+#include <string>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
+
+#include "stillmap/config/config_io.hpp"
+#include "stillmap/core/se3.hpp"
+#include "stillmap/eval/ate.hpp"
+#include "stillmap/features/features_test_support.hpp"
+#include "stillmap/synth/sequence.hpp"
+#include "stillmap/system/system.hpp"
+
+namespace stillmap {
+namespace {
+
+constexpr std::uint32_t kFrames = 60;
+constexpr std::uint32_t kEnters = 10;  // when the curtain begins to come in
+constexpr int kCurtainEnd = 150;       // the columns left of it are never covered
+constexpr int kFrayedBegin = 170;      // where depth begins to be wrong
+constexpr float kCurtain_m = 1.0F;     // nearer than anything in the room
+
+// The empty room as a hand-held camera sees it.
+const SyntheticSequence& room() {
+  static const SyntheticSequence kRoom = [] {
+    SyntheticOptions options;
+    options.camera = synthetic_camera(320, 240);
+    options.frames = kFrames;
+    return SyntheticSequence(options);
+  }();
+  return kRoom;
+}
+
+const std::vector<FramePtr>& room_frames() {
+  static const std::vector<FramePtr> kRendered = [] {
+    std::vector<FramePtr> frames;
+    for (std::uint32_t k = 0; k < kFrames; ++k) frames.push_back(room().frame(FrameId(k)));
+    return frames;
+  }();
+  return kRendered;
+}
+
+/// The first column that a curtain covers, which comes in from the right.
+int curtain_begin(std::uint32_t k) {
+  const int columns = 10 * (static_cast<int>(k) - static_cast<int>(kEnters));
+  return std::clamp(320 - columns, kCurtainEnd, 320);
+}
+
+/// What the frames show besides the room.
+enum class Disturbance {
+  kCurtain,  ///< it covers most of the room and goes up and down: who takes it for the room does so
+  kFrayed,   ///< half of the room seems nearer than it is, another way in each pixel
+};
+
+void draw_curtain(RgbdFrame& frame) {
+  static const GrayImage kPattern = textured_image(320, 400, 2);
+  const std::uint32_t k = frame.id.value;
+  const int begin = curtain_begin(k);
+  if (begin == 320) return;
+  const cv::Rect covered(begin, 0, 320 - begin, 240);
+  const int top = std::abs(static_cast<int>(k * 5 % 240) - 120);  // five pixels a frame
+  kPattern.mat(covered + cv::Point(0, top)).copyTo(frame.gray.mat(covered));
+  TestDice dice(k);
+  for (float& z : cv::Mat1f(frame.depth.mat, covered)) z = kCurtain_m + dice.uniform(-0.01F, 0.01F);
+}
+
+void fray_depth(RgbdFrame& frame) {
+  TestDice dice(frame.id.value);
+  for (int v = 0; v < 240; ++v) {
+    for (int u = kFrayedBegin; u < 320; ++u) {
+      float& z = frame.depth.mat(v, u);
+      if (z > 0) z *= dice.uniform(0.5F, 0.9F);
+    }
+  }
+}
+
+FramePtr disturbed(const RgbdFrame& room, Disturbance disturbance) {
+  RgbdFrame frame = room;
+  frame.gray = GrayImage(room.gray.mat.clone());
+  frame.depth = DepthImage(room.depth.mat.clone());
+  disturbance == Disturbance::kCurtain ? draw_curtain(frame) : fray_depth(frame);
+  return std::make_shared<const RgbdFrame>(std::move(frame));
+}
+
+/// What a network says of a frame.
+using Network = std::function<FrameDetections(std::uint32_t k)>;
+
+FrameDetections empty_frame(std::uint32_t k) {
+  FrameDetections found;
+  found.stamp = room().stamp(FrameId(k));
+  found.mask = ObjectMask(cv::Mat1b(240, 320, std::uint8_t{0}));
+  return found;
+}
+
+/// Adds an object from column `begin` to `end` - 1, whose mask ends at `mask_end`.
+void add_object(FrameDetections& found, const char* name, int begin, int end, int mask_end) {
+  if (end - begin < 10) return;
+  const int id = static_cast<int>(found.objects.size()) + 1;
+  found.objects.push_back({static_cast<std::uint8_t>(id),
+                           name,
+                           1.0,
+                           {static_cast<double>(begin), 0, static_cast<double>(end), 240}});
+  cv::Mat1b mask = found.mask.mat.colRange(begin, std::clamp(mask_end, begin, end));
+  mask.setTo(id);
+}
+
+FrameDetections whole_curtain(std::uint32_t k) {
+  FrameDetections found = empty_frame(k);
+  add_object(found, "person", curtain_begin(k), 320, 320);
+  return found;
+}
+
+/// The error in metres; a share of frames without a pose counts as so many metres.
+double error(Disturbance disturbance, const Network& network, const SystemConfig& config) {
+  ObjectTracker tracker(config.dynamics.object_tracking(), FillRule::kBothWays);
+  System system(config, room().camera(), 1);
+  Trajectory truth;
+  std::vector<FramePtr> frames;
+  const auto process = [&](FrameObjects objects) {
+    const FramePtr frame = frames.at(objects.frame.value);
+    (void)system.process(frame, std::move(objects));
+  };
+  for (std::uint32_t k = 0; k < kFrames; ++k) {
+    frames.push_back(disturbed(*room_frames()[k], disturbance));
+    truth.push_back({frames[k]->stamp, room().pose(FrameId(k))});
+    if (auto objects = tracker.push({FrameId(k), network(k), frames[k]->depth})) {
+      process(std::move(*objects));
+    }
+  }
+  for (FrameObjects& objects : tracker.flush()) process(std::move(objects));
+  const Trajectory trajectory = system.finish().trajectory;
+  const std::optional<AteResult> ate = absolute_trajectory_error(truth, trajectory);
+  const double lost = static_cast<double>(kFrames - trajectory.size()) / kFrames;
+  return lost + (ate ? ate->translation_m.rmse : 1.0);
+}
+
+/// A mode with none of its stages but those named.
+SystemConfig with_stages(const std::string& mode, std::initializer_list<std::string> stages) {
+  SystemConfig config;
+  config.dynamics.mode = mode;
+  for (const std::string stage : {"extension.enabled",
+                                  "jump.enabled",
+                                  "interaction.enabled",
+                                  "fill_boxes",
+                                  "depth_stability.enabled",
+                                  "static_matches.enabled"}) {
+    const bool wanted = std::ranges::find(stages, stage) != stages.end();
+    set_value(list_fields(config), fmt::format("dynamics.{}={}", stage, wanted));
+  }
+  return config;
+}
+
+struct Comparison {
+  double with = 0, without = 0;
+};
+
+Comparison compare(Disturbance disturbance,
+                   const Network& network,
+                   const std::string& mode,
+                   const std::string& stage) {
+  const Comparison errors{error(disturbance, network, with_stages(mode, {stage})),
+                          error(disturbance, network, with_stages(mode, {}))};
+  fmt::print("{}: {:.4f} m with {}, {:.4f} m without\n", mode, errors.with, stage, errors.without);
+  return errors;
+}
+
+void expect_gain(Disturbance disturbance,
+                 const Network& network,
+                 const std::string& mode,
+                 const std::string& stage) {
+  const Comparison errors = compare(disturbance, network, mode, stage);
+  EXPECT_LT(errors.with, 0.02);
+  EXPECT_GT(errors.without, 1.6 * errors.with);
+}
+
+TEST(Stages, MasksKeepTheCurtainOutOfThePose) {
+  EXPECT_LT(error(Disturbance::kCurtain, whole_curtain, with_stages("mask", {})), 0.02);
+  EXPECT_GT(error(Disturbance::kCurtain, empty_frame, with_stages("mask", {})), 0.04);
+}
+
+/// A network that masks only the left of the curtain.
+Network half_blind(double masked_share) {
+  return [masked_share](std::uint32_t k) {
+    const int begin = curtain_begin(k);
+    FrameDetections found = empty_frame(k);
+    add_object(found, "person", begin, 320, begin + cvRound(masked_share * (320 - begin)));
+    return found;
+  };
+}
+
+TEST(Stages, ExtensionReachesWhereMasksDoNot) {
+  expect_gain(Disturbance::kCurtain, half_blind(0.5), "paper", "extension.enabled");
+  expect_gain(Disturbance::kCurtain, half_blind(0.75), "full", "extension.enabled");
+}
+
+TEST(Stages, JumpsFindWhatNoNetworkDoes) {
+  expect_gain(Disturbance::kCurtain, empty_frame, "full", "jump.enabled");
+}
+
+TEST(Stages, InteractionFindsWhatAPersonMoves) {
+  const Network network = [](std::uint32_t k) {
+    const int begin = curtain_begin(k);
+    FrameDetections found = empty_frame(k);
+    const int person_end = std::min(begin + 40, 320);
+    add_object(found, "person", begin, person_end, person_end);
+    if (begin < 240) add_object(found, "chair", begin + 30, 320, 320);
+    return found;
+  };
+  for (const char* mode : {"paper", "full"})
+    expect_gain(Disturbance::kCurtain, network, mode, "interaction.enabled");
+}
+
+TEST(Stages, FilledBoxesStandForThoseMissed) {
+  const Network network = [](std::uint32_t k) {
+    return k % 4 == 0 || k % 4 == 1 ? empty_frame(k) : whole_curtain(k);
+  };
+  for (const char* mode : {"paper", "full"})
+    expect_gain(Disturbance::kCurtain, network, mode, "fill_boxes");
+}
+
+// Features that have no match in the frame before are not told apart: the pose is better, not
+// right.
+TEST(Stages, StaticMatchesTellWhatMovesInABoxWithoutMask) {
+  const Comparison errors =
+      compare(Disturbance::kCurtain, half_blind(0), "paper", "static_matches.enabled");
+  EXPECT_GT(errors.without, 1.3 * errors.with);
+}
+
+TEST(Stages, StableDepthIsBetterThanAny) {
+  for (const char* mode : {"paper", "full"})
+    expect_gain(Disturbance::kFrayed, empty_frame, mode, "depth_stability.enabled");
+}
+
+}  // namespace
+}  // namespace stillmap
