@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/formats/visible_points.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace stillmap {
+namespace {
+
+constexpr double kCellPx = 4.0;
+constexpr double kMinDepthM = 0.05;
+constexpr double kMaxRadiusPx = 64.0;  // a disc at the lens must not cover all of the image
+
+// The largest upright rectangle that every ideal pixel of the image's border lies outside of.
+Eigen::AlignedBox2d inner_rectangle(const CameraModel& camera) {
+  const double right = camera.width_px - 1.0;
+  const double bottom = camera.height_px - 1.0;
+  Eigen::AlignedBox2d box(Eigen::Vector2d(0, 0), Eigen::Vector2d(right, bottom));
+  if (!camera.distorted()) return box;
+  const auto ideal = [&](double u, double v) { return camera.undistort({u, v}); };
+  box.min().setConstant(-std::numeric_limits<double>::infinity());
+  box.max().setConstant(std::numeric_limits<double>::infinity());
+  constexpr int kSteps = 32;
+  for (int i = 0; i <= kSteps; ++i) {
+    const double u = right * i / kSteps;
+    const double v = bottom * i / kSteps;
+    box.min().x() = std::max(box.min().x(), ideal(0, v).x());
+    box.max().x() = std::min(box.max().x(), ideal(right, v).x());
+    box.min().y() = std::max(box.min().y(), ideal(u, 0).y());
+    box.max().y() = std::min(box.max().y(), ideal(u, bottom).y());
+  }
+  return box;
+}
+
+struct Projected {
+  std::uint32_t index = 0;
+  Eigen::Vector2d px;  // from the rectangle's corner
+  double depth_m = 0.0;
+};
+
+class DepthCells {
+ public:
+  explicit DepthCells(const Eigen::Vector2d& size_px)
+      : columns_(count(size_px.x())),
+        rows_(count(size_px.y())),
+        nearest_m_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_),
+                   std::numeric_limits<float>::infinity()) {}
+
+  void cover(const Eigen::Vector2d& px, double radius_px, double depth_m) {
+    const int left = clamp(px.x() - radius_px, columns_);
+    const int right = clamp(px.x() + radius_px, columns_);
+    const int bottom = clamp(px.y() + radius_px, rows_);
+    for (int row = clamp(px.y() - radius_px, rows_); row <= bottom; ++row) {
+      for (int column = left; column <= right; ++column) {
+        float& nearest = nearest_m_[at(row, column)];
+        nearest = std::min(nearest, static_cast<float>(depth_m));
+      }
+    }
+  }
+
+  [[nodiscard]] double nearest(const Eigen::Vector2d& px) const {
+    return nearest_m_[at(clamp(px.y(), rows_), clamp(px.x(), columns_))];
+  }
+
+ private:
+  static int count(double size_px) { return static_cast<int>(std::floor(size_px / kCellPx)) + 1; }
+  static int clamp(double px, int cells) {
+    return std::clamp(static_cast<int>(std::floor(px / kCellPx)), 0, cells - 1);
+  }
+  [[nodiscard]] std::size_t at(int row, int column) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+           static_cast<std::size_t>(column);
+  }
+
+  int columns_;
+  int rows_;
+  std::vector<float> nearest_m_;
+};
+
+}  // namespace
+
+std::vector<std::uint32_t> visible_points(std::span<const Eigen::Vector3f> p_world,
+                                          const Eigen::Isometry3d& T_world_camera,
+                                          const CameraModel& camera,
+                                          const VisibilityOptions& options) {
+  const Eigen::AlignedBox2d box = inner_rectangle(camera);
+  if (box.isEmpty()) return {};
+  const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
+  DepthCells cells(box.sizes());
+  std::vector<Projected> inside;
+  for (std::size_t i = 0; i < p_world.size(); ++i) {
+    const Eigen::Vector3d p_camera = T_camera_world * p_world[i].cast<double>();
+    if (!(p_camera.z() > kMinDepthM)) continue;
+    const Eigen::Vector2d px = camera.project(p_camera);
+    if (!box.contains(px)) continue;
+    const double radius_px = options.point_radius_m * camera.fx / p_camera.z();
+    inside.push_back({static_cast<std::uint32_t>(i), px - box.min(), p_camera.z()});
+    cells.cover(inside.back().px, std::min(radius_px, kMaxRadiusPx), p_camera.z());
+  }
+  std::vector<std::uint32_t> seen;
+  for (const Projected& point : inside) {
+    if (point.depth_m <= cells.nearest(point.px) + options.margin_m) seen.push_back(point.index);
+  }
+  return seen;
+}
+
+}  // namespace stillmap
