@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Eigenvalues>
@@ -15,8 +17,9 @@
 namespace stillmap {
 namespace {
 
-constexpr double kThinnedM = 0.05;        // so that points count surface, not how often it was seen
-constexpr std::size_t kMinSupport = 200;  // half a square metre of it
+constexpr double kThinnedM = 0.05;  // so that points count surface, not how often it was seen
+constexpr double kAreaCellM = 0.1;
+constexpr std::size_t kMinAreaCells = 50;  // half a square metre
 constexpr double kInlierM = 0.03;
 constexpr double kBelowM = 0.10;
 constexpr double kMaxShareBelow = 0.05;
@@ -93,6 +96,26 @@ FloorPlane fitted(const FloorPlane& plane, const Points& points) {
   return {up, -up.dot(mean)};
 }
 
+// The plane's surface in cells with points in them and in all cells round them: the line where a
+// wall ends, or where the plane cuts through one, has none.
+std::size_t inner_cells(const FloorPlane& plane, const Points& points) {
+  const Eigen::Vector3d u = plane.up.unitOrthogonal();
+  const Eigen::Vector3d v = plane.up.cross(u);
+  std::set<std::pair<int, int>> cells;
+  for (const Eigen::Vector3d& p : points) {
+    if (std::abs(plane.height_m(p)) > kInlierM) continue;
+    cells.emplace(static_cast<int>(std::floor(u.dot(p) / kAreaCellM)),
+                  static_cast<int>(std::floor(v.dot(p) / kAreaCellM)));
+  }
+  const auto is_inner = [&](const std::pair<int, int>& cell) {
+    for (int i = 0; i < 9; ++i) {
+      if (!cells.contains({cell.first + i / 3 - 1, cell.second + i % 3 - 1})) return false;
+    }
+    return true;
+  };
+  return static_cast<std::size_t>(std::ranges::count_if(cells, is_inner));
+}
+
 struct Candidate {
   std::size_t support = 0;
   FloorPlane plane;
@@ -131,17 +154,22 @@ std::vector<Candidate> draw_candidates(const Points& points, const CameraEvidenc
 std::optional<FloorPlane> find_floor(std::span<const Eigen::Vector3f> p_world,
                                      std::span<const Eigen::Isometry3d> T_world_camera) {
   const Points points = thinned(p_world);
-  if (points.size() < kMinSupport || T_world_camera.empty()) return std::nullopt;
+  if (points.empty() || T_world_camera.empty()) return std::nullopt;
   const CameraEvidence cameras(T_world_camera);
-  Candidate best;
+  std::size_t most = 0;
+  FloorPlane best;
   for (const Candidate& candidate : draw_candidates(points, cameras)) {
     FloorPlane plane = candidate.plane;
     for (int i = 0; i < kRefinements; ++i) plane = fitted(plane, points);
     const std::optional<FloorPlane> floor = cameras.as_floor(plane);
-    const std::size_t on = floor ? support(*floor, points) : 0;
-    if (on > best.support) best = {on, *floor};
+    const std::size_t area =
+        floor && support(*floor, points) > 0 ? inner_cells(*floor, points) : std::size_t{0};
+    if (area > most) {
+      most = area;
+      best = *floor;
+    }
   }
-  return best.support >= kMinSupport ? std::optional(best.plane) : std::nullopt;
+  return most >= kMinAreaCells ? std::optional(best) : std::nullopt;
 }
 
 Eigen::Isometry3d floor_frame(const FloorPlane& floor, const Eigen::Isometry3d& T_world_camera) {

@@ -72,7 +72,8 @@ TEST(ObserveSpace, OfARoomKnowsWhatIsFreeAndWhatIsHidden) {
   EXPECT_EQ(state(5.01, 2.01, 1.22), '#');  // another room's wall
   EXPECT_EQ(state(1.82, 2.01, 0.72), '#');  // on the table
   EXPECT_EQ(state(1.82, 2.01, 0.82), '.');  // above it
-  EXPECT_EQ(state(1.92, 2.01, 0.32), '?');  // below it, where no camera looks
+  EXPECT_EQ(state(1.92, 2.01, 0.32), '.');  // below it, in view over the floor
+  EXPECT_EQ(state(1.92, 2.01, 0.62), '?');  // below it, where no camera looks
 }
 
 TEST(ObserveSpace, NothingBehindAClosedWallIsFreeAtAnyAngle) {
