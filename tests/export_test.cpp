@@ -2,6 +2,7 @@
 // `stillmap export` from outside: what it writes, that other programs read it, and how it refuses.
 #include <sstream>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <octomap/OcTree.h>

@@ -16,11 +16,11 @@ struct FloorPlane {
   [[nodiscard]] double height_m(const Eigen::Vector3d& p) const { return up.dot(p) + offset_m; }
 };
 
-/// Finds the floor in a map whose vertical is not known: the plane with the most surface on it
-/// (RANSAC, always the same draws, then least squares) that is at least 20 cm below every camera,
-/// within 50 degrees of what the cameras on average hold to be horizontal, with at most one part in
-/// twenty of the map more than 10 cm below it, and at least half a square metre large. Nothing when
-/// there is none: the floor was not seen, or the cameras were held sideways.
+/// Finds the floor in a map whose vertical is not known: of the planes with flat patches of surface
+/// on them (RANSAC, always the same draws, then least squares) the one with the most surface that
+/// is at least 20 cm below every camera, within 50 degrees of what the cameras on average hold to
+/// be horizontal, and has at most one part in twenty of the map more than 10 cm below it. Nothing
+/// when none has half a square metre: the floor was hardly seen, or the cameras were held sideways.
 [[nodiscard]] std::optional<FloorPlane> find_floor(
     std::span<const Eigen::Vector3f> p_world, std::span<const Eigen::Isometry3d> T_world_camera);
 

@@ -27,6 +27,21 @@ float log_odds(const octomap::OcTree& tree, const SpaceVoxel& voxel) {
                           : std::max(views * tree.getProbMissLog(), tree.getClampingThresMinLog());
 }
 
+// What OcTree::writeBinary writes; that prints to the terminal too.
+void write_binary(std::ostream& stream, octomap::OcTree& tree) {
+  tree.toMaxLikelihood();
+  tree.prune();
+  stream << "# Octomap OcTree binary file\n"
+            "# (feel free to add / change comments, but leave the first line as it is!)\n#\n"
+         << "id " << tree.getTreeType() << "\nsize " << tree.size() << "\nres "
+         << tree.getResolution() << "\ndata\n";
+  tree.writeBinaryData(stream);
+}
+
+void write_full(std::ostream& stream, const octomap::OcTree& tree) {
+  STILLMAP_CHECK(tree.write(stream));
+}
+
 }  // namespace
 
 std::string encode_octree(const ObservedSpace& space, OctreeFormat format) {
@@ -38,9 +53,8 @@ std::string encode_octree(const ObservedSpace& space, OctreeFormat format) {
   tree.updateInnerOccupancy();
   tree.prune();
   std::ostringstream stream;
-  const bool written =
-      format == OctreeFormat::kBinary ? tree.writeBinary(stream) : tree.write(stream);
-  STILLMAP_CHECK(written && stream.good());
+  format == OctreeFormat::kBinary ? write_binary(stream, tree) : write_full(stream, tree);
+  STILLMAP_CHECK(stream.good());
   return std::move(stream).str();
 }
 
