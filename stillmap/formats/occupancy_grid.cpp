@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "stillmap/core/error.hpp"
+#include "stillmap/formats/view_cone.hpp"
 
 namespace stillmap {
 namespace {
@@ -17,6 +18,7 @@ constexpr double kMaxCells = 67108864;  // 2^26
 struct Column {
   int points = 0;       // in the band
   int seen_voxels = 0;  // in the band
+  int seen_low = 0;     // of them in its lowest third
   bool floor = false;
 };
 
@@ -40,6 +42,10 @@ Extent extent_of(const ObservedSpace& space) {
   return {low, size};
 }
 
+double lowest_third_m(const HeightBand& band) {
+  return band.min_m + (band.max_m - band.min_m) / 3;
+}
+
 // Voxels are counted from the lower end of the band, so that none lies on both sides of it.
 void add(Column& column, const SpaceVoxel& voxel, const HeightBand& band, double resolution_m) {
   const double bottom_m = band.min_m + voxel.index.z() * resolution_m;
@@ -48,7 +54,9 @@ void add(Column& column, const SpaceVoxel& voxel, const HeightBand& band, double
     column.floor = column.floor || (voxel.occupied() && near_floor);
   } else if (bottom_m + resolution_m / 2 <= band.max_m) {
     column.points += voxel.points;
-    column.seen_voxels += voxel.occupied() ? 0 : 1;
+    if (voxel.occupied()) return;
+    ++column.seen_voxels;
+    if (bottom_m + resolution_m / 2 < lowest_third_m(band)) ++column.seen_low;
   }
 }
 
@@ -66,30 +74,79 @@ std::string quoted(const std::string& text) {
   return result + '"';
 }
 
-OccupancyGrid project_to_floor(const ObservedSpace& space, const HeightBand& band) {
-  OccupancyGrid grid{.resolution_m = space.resolution_m, .cells = {}};
-  if (space.voxels.empty()) return grid;
-  const Extent extent = extent_of(space);
-  grid.width = extent.size.x();
-  grid.height = extent.size.y();
-  grid.origin_m = extent.low.cast<double>() * space.resolution_m;
-  std::vector<Column> columns(static_cast<std::size_t>(grid.width) *
-                              static_cast<std::size_t>(grid.height));
-  for (const SpaceVoxel& voxel : space.voxels) {
-    const Eigen::Array2i at = voxel.index.head<2>().array() - extent.low;
-    const std::size_t row = static_cast<std::size_t>(at.y()) * static_cast<std::size_t>(grid.width);
-    add(columns[row + static_cast<std::size_t>(at.x())], voxel, band, space.resolution_m);
+// Tells ground that no camera was turned to from ground that something hid.
+class GroundView {
+ public:
+  GroundView(std::span<const Eigen::Isometry3d> T_world_camera,
+             const CameraModel& camera,
+             double max_range_m)
+      : cone_(camera), max_range_m_(max_range_m) {
+    for (const Eigen::Isometry3d& T : T_world_camera) T_camera_world_.push_back(T.inverse());
   }
-  const double min_seen = kMinSeenShare * (band.max_m - band.min_m) / space.resolution_m;
-  grid.cells.reserve(columns.size());
-  for (const Column& column : columns) {
-    const bool free = column.floor || (column.seen_voxels > 0 && column.seen_voxels >= min_seen);
-    grid.cells.push_back(column.points >= kMinPoints ? GridCell::kOccupied
-                         : free                      ? GridCell::kFree
-                                                     : GridCell::kUnknown);
+
+  [[nodiscard]] bool covers(const Eigen::Vector3d& p) const {
+    return std::ranges::any_of(T_camera_world_, [&](const Eigen::Isometry3d& T) {
+      const Eigen::Vector3d p_camera = T * p;
+      return p_camera.norm() <= max_range_m_ && cone_.pixel(p_camera).has_value();
+    });
   }
-  return grid;
-}
+
+ private:
+  ViewCone cone_;
+  double max_range_m_;
+  std::vector<Eigen::Isometry3d> T_camera_world_;
+};
+
+// The columns of space whose z = 0 is the band's lower end.
+class Columns {
+ public:
+  Columns(const ObservedSpace& space, const HeightBand& band)
+      : band_(band), resolution_m_(space.resolution_m), extent_(extent_of(space)) {
+    columns_.resize(static_cast<std::size_t>(extent_.size.x()) *
+                    static_cast<std::size_t>(extent_.size.y()));
+    for (const SpaceVoxel& voxel : space.voxels) {
+      const Eigen::Array2i cell = voxel.index.head<2>().array() - extent_.low;
+      add(columns_[index(cell.x(), cell.y())], voxel, band, resolution_m_);
+    }
+  }
+
+  [[nodiscard]] OccupancyGrid judge(const GroundView& view) const {
+    OccupancyGrid grid{.width = extent_.size.x(),
+                       .height = extent_.size.y(),
+                       .resolution_m = resolution_m_,
+                       .origin_m = extent_.low.cast<double>() * resolution_m_,
+                       .cells = {}};
+    grid.cells.reserve(columns_.size());
+    for (int y = 0; y < grid.height; ++y) {
+      for (int x = 0; x < grid.width; ++x) grid.cells.push_back(judge_cell(x, y, view));
+    }
+    return grid;
+  }
+
+ private:
+  [[nodiscard]] std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(extent_.size.x()) +
+           static_cast<std::size_t>(x);
+  }
+
+  [[nodiscard]] GridCell judge_cell(int x, int y, const GroundView& view) const {
+    const Column& column = columns_[index(x, y)];
+    if (column.points >= kMinPoints) return GridCell::kOccupied;
+    if (column.floor) return GridCell::kFree;
+    const double enough = kMinSeenShare * (band_.max_m - band_.min_m) / resolution_m_;
+    if (column.seen_voxels == 0 || column.seen_voxels < enough) return GridCell::kUnknown;
+    if (column.seen_low > 0) return GridCell::kFree;
+    const Eigen::Vector2d middle =
+        resolution_m_ * ((extent_.low + Eigen::Array2i(x, y)).cast<double>() + 0.5).matrix();
+    const Eigen::Vector3d low(middle.x(), middle.y(), (lowest_third_m(band_) - band_.min_m) / 2);
+    return view.covers(low) ? GridCell::kUnknown : GridCell::kFree;
+  }
+
+  HeightBand band_;
+  double resolution_m_;
+  Extent extent_;
+  std::vector<Column> columns_;
+};
 
 }  // namespace
 
@@ -105,7 +162,9 @@ OccupancyGrid make_occupancy_grid(std::span<const Eigen::Vector3f> p_grid,
   std::vector<Eigen::Isometry3d> cameras;
   for (const Eigen::Isometry3d& T : T_grid_camera)
     cameras.push_back(Eigen::Translation3d(down) * T);
-  return project_to_floor(observe_space(points, cameras, camera, options), band);
+  const ObservedSpace space = observe_space(points, cameras, camera, options);
+  if (space.voxels.empty()) return OccupancyGrid{.resolution_m = options.resolution_m, .cells = {}};
+  return Columns(space, band).judge(GroundView(cameras, camera, options.max_range_m));
 }
 
 std::string encode_pgm(const OccupancyGrid& grid) {

@@ -58,6 +58,19 @@ TEST(MakeOccupancyGrid, ATableHigherThanTheRobotIsNoObstacle) {
   EXPECT_EQ(state(grid_of(TestRoom(), {}, {0.8, 1.8}), 1.8, 2.0), '.');
 }
 
+TEST(MakeOccupancyGrid, GroundHiddenByATableIsUnknownGroundNeverLookedAtFree) {
+  TestRoom room;
+  // Nothing of the floor behind the table is in the map, nor near the camera.
+  std::erase_if(room.cloud.positions, [](const Eigen::Vector3f& p) {
+    return p.z() < 0.1F && (p.x() > 1.2F || p.x() < 0.9F);
+  });
+  // The view below the table is blocked too.
+  add_rectangle(room.cloud, {1.5, 1.6, 0}, {0, 0.8, 0}, {0, 0, 0.72});
+  const OccupancyGrid grid = grid_of(room);
+  EXPECT_EQ(state(grid, 2.32, 2.02), '?');  // in view, hidden; over it much is free
+  EXPECT_EQ(state(grid, 0.87, 2.02), '.');  // below the image's lower edge
+}
+
 TEST(MakeOccupancyGrid, OneStrayPointIsNoObstacle) {
   TestRoom room;
   room.cloud.positions.emplace_back(0.83F, 1.03F, 1.0F);

@@ -4,38 +4,19 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+
+#include "stillmap/formats/view_cone.hpp"
 
 namespace stillmap {
 namespace {
 
 constexpr double kCellPx = 4.0;
-constexpr double kMinDepthM = 0.05;
 constexpr double kMaxRadiusPx = 64.0;  // a disc at the lens must not cover all of the image
-
-// The largest upright rectangle that every ideal pixel of the image's border lies outside of.
-Eigen::AlignedBox2d inner_rectangle(const CameraModel& camera) {
-  const double right = camera.width_px - 1.0;
-  const double bottom = camera.height_px - 1.0;
-  Eigen::AlignedBox2d box(Eigen::Vector2d(0, 0), Eigen::Vector2d(right, bottom));
-  if (!camera.distorted()) return box;
-  const auto ideal = [&](double u, double v) { return camera.undistort({u, v}); };
-  box.min().setConstant(-std::numeric_limits<double>::infinity());
-  box.max().setConstant(std::numeric_limits<double>::infinity());
-  constexpr int kSteps = 32;
-  for (int i = 0; i <= kSteps; ++i) {
-    const double u = right * i / kSteps;
-    const double v = bottom * i / kSteps;
-    box.min().x() = std::max(box.min().x(), ideal(0, v).x());
-    box.max().x() = std::min(box.max().x(), ideal(right, v).x());
-    box.min().y() = std::max(box.min().y(), ideal(u, 0).y());
-    box.max().y() = std::min(box.max().y(), ideal(u, bottom).y());
-  }
-  return box;
-}
 
 struct Projected {
   std::uint32_t index = 0;
-  Eigen::Vector2d px;  // from the rectangle's corner
+  Eigen::Vector2d px;
   double depth_m = 0.0;
 };
 
@@ -84,19 +65,17 @@ std::vector<std::uint32_t> visible_points(std::span<const Eigen::Vector3f> p_wor
                                           const Eigen::Isometry3d& T_world_camera,
                                           const CameraModel& camera,
                                           const VisibilityOptions& options) {
-  const Eigen::AlignedBox2d box = inner_rectangle(camera);
-  if (box.isEmpty()) return {};
+  const ViewCone cone(camera);
   const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
-  DepthCells cells(box.sizes());
+  DepthCells cells(cone.size_px());
   std::vector<Projected> inside;
   for (std::size_t i = 0; i < p_world.size(); ++i) {
     const Eigen::Vector3d p_camera = T_camera_world * p_world[i].cast<double>();
-    if (!(p_camera.z() > kMinDepthM)) continue;
-    const Eigen::Vector2d px = camera.project(p_camera);
-    if (!box.contains(px)) continue;
+    const std::optional<Eigen::Vector2d> px = cone.pixel(p_camera);
+    if (!px) continue;
     const double radius_px = options.point_radius_m * camera.fx / p_camera.z();
-    inside.push_back({static_cast<std::uint32_t>(i), px - box.min(), p_camera.z()});
-    cells.cover(inside.back().px, std::min(radius_px, kMaxRadiusPx), p_camera.z());
+    inside.push_back({static_cast<std::uint32_t>(i), *px, p_camera.z()});
+    cells.cover(*px, std::min(radius_px, kMaxRadiusPx), p_camera.z());
   }
   std::vector<std::uint32_t> seen;
   for (const Projected& point : inside) {

@@ -17,8 +17,7 @@ struct VisibilityOptions {
 };
 
 /// Indices, ascending, of the points that a camera sees before all others, by a z-buffer in cells
-/// of 4 pixels. With a distorted camera: those in the largest upright rectangle of ideal pixels
-/// that lies inside the image. Points nearer than 5 cm neither count nor hide others.
+/// of 4 pixels. What is not in its ViewCone neither counts nor hides others.
 [[nodiscard]] std::vector<std::uint32_t> visible_points(std::span<const Eigen::Vector3f> p_world,
                                                         const Eigen::Isometry3d& T_world_camera,
                                                         const CameraModel& camera,
