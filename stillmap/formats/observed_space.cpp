@@ -47,8 +47,8 @@ class SpaceObserver {
       : points_(std::move(points)), options_(options) {
     for (const Eigen::Vector3f& p : points_) {
       ++evidence_.at(voxel_of(p.cast<double>(), options_.resolution_m)).points;
+      check_size();
     }
-    check_size();
   }
 
   void add_view(const Eigen::Isometry3d& T_world_camera, const CameraModel& camera) {

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kMinPoints = 2;
 constexpr double kMinSeenShare = 0.25;
-constexpr double kMaxCells = 67108864;  // 2^26
+constexpr double kMaxCells = 33554432;  // 2^25
 
 // What a column of voxels says.
 struct Column {

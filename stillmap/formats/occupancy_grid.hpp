@@ -41,7 +41,7 @@ struct HeightBand {
 /// Occupied: the column has at least two thinned points in the band (one alone may be noise). Else
 /// free: floor was seen there, or through at least a quarter of the band, unless the lowest third
 /// of the band was in view but hidden. Else unknown. As large as what is known; of size 0 when
-/// nothing is. Throws Error, naming --resolution, as observe_space does and beyond 2^26 cells.
+/// nothing is. Throws Error, naming --resolution, as observe_space does and beyond 2^25 cells.
 [[nodiscard]] OccupancyGrid make_occupancy_grid(std::span<const Eigen::Vector3f> p_grid,
                                                 std::span<const Eigen::Isometry3d> T_grid_camera,
                                                 const CameraModel& camera,

@@ -2,7 +2,6 @@
 #include "stillmap/formats/view_cone.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "stillmap/core/error.hpp"
 
@@ -18,8 +17,9 @@ Eigen::AlignedBox2d inner_rectangle(const CameraModel& camera) {
   Eigen::AlignedBox2d box(Eigen::Vector2d(0, 0), Eigen::Vector2d(right, bottom));
   if (!camera.distorted()) return box;
   const auto ideal = [&](double u, double v) { return camera.undistort({u, v}); };
-  box.min().setConstant(-std::numeric_limits<double>::infinity());
-  box.max().setConstant(std::numeric_limits<double>::infinity());
+  // No farther than an image's size beyond the image: a wild distortion has no bounds.
+  box =
+      Eigen::AlignedBox2d(Eigen::Vector2d(-right, -bottom), Eigen::Vector2d(2 * right, 2 * bottom));
   constexpr int kSteps = 32;
   for (int i = 0; i <= kSteps; ++i) {
     const double u = right * i / kSteps;

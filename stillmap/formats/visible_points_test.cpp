@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "stillmap/core/error.hpp"
 #include "stillmap/formats/test_room.hpp"
 
 namespace stillmap {
@@ -58,6 +59,19 @@ TEST(VisiblePoints, OfADistortedCameraLieInsideItsImage) {
     right = std::max(right, raw.x());
   }
   EXPECT_GT(right, 620);
+}
+
+TEST(VisiblePoints, OfACameraWithAWildDistortionAreFewOrAnError) {
+  const std::vector<Eigen::Vector3f> points = {{0, 0, 1}, {0.3F, 0, 1}};
+  for (const double k1 : {-1e9, -5.0, 1e3, 1e9}) {
+    CameraModel camera = test_camera();
+    camera.k1 = k1;
+    try {
+      EXPECT_LE(visible_points(points, kHere, camera, kOptions).size(), 2U);
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("camera test"));
+    }
+  }
 }
 
 }  // namespace
