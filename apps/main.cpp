@@ -32,6 +32,7 @@ constexpr const char* kExamples =
     "  stillmap run office --out result            trajectory, map and report of a sequence\n"
     "  stillmap run office --out result --set tracking.features=2000\n"
     "  stillmap evaluate trajectory office/groundtruth.txt result/trajectory.txt\n"
+    "  stillmap export result --octomap map.bt     its map for other programs\n"
     "  stillmap config                             every setting, its default and its meaning\n";
 
 std::string version_text() {
@@ -51,6 +52,7 @@ const std::vector<AddCommand> kCommands = {add_run_command,
                                            add_segment_command,
                                            add_synth_command,
                                            add_evaluate_command,
+                                           add_export_command,
                                            add_config_command};
 
 int run(const std::vector<std::string>& arguments) {

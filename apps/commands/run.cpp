@@ -60,8 +60,7 @@ SystemConfig make_config(const RunArguments& arguments) {
 
 std::optional<CameraModel> chosen_camera(const std::string& name) {
   if (name.empty()) return std::nullopt;
-  const bool is_file = name.find('/') != std::string::npos || name.ends_with(".yaml");
-  return is_file ? read_camera_yaml(name) : builtin_camera(name);
+  return camera_by_name(name);
 }
 
 std::optional<Trajectory> read_groundtruth(const RunArguments& arguments,

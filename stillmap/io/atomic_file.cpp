@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <deque>
+#include <optional>
 #include <system_error>
 #include <utility>
 
@@ -97,25 +99,64 @@ OpenTemporary open_temporary(const fs::path& path) {
               path.string());
 }
 
-}  // namespace
+// A file's new content under a temporary name, which goes unless it takes the file's.
+class Replacement {
+ public:
+  Replacement(fs::path asked_for, fs::path target, std::string_view bytes)
+      : asked_for_(std::move(asked_for)), target_(std::move(target)) {
+    OpenTemporary opened = open_temporary(target_);
+    temporary_.emplace(opened.path);
+    write_all(opened.file, bytes, asked_for_);
+    close_checked(opened.file, asked_for_);
+  }
 
-void write_file_atomically(const fs::path& path, std::string_view bytes) {
+  void take_place() {
+    if (::rename(temporary_->path().c_str(), target_.c_str()) != 0) {
+      throw Error("cannot write {}: {}", asked_for_.string(), reason(errno));
+    }
+    temporary_->keep();
+  }
+
+ private:
+  fs::path asked_for_;
+  fs::path target_;
+  std::optional<TemporaryFile> temporary_;
+};
+
+// Where the bytes go: what `path` links to.
+fs::path checked_target(const fs::path& path) {
   std::error_code ignored;
   const fs::path target =
       fs::is_symlink(path, ignored) ? fs::weakly_canonical(path, ignored) : path;
   if (target.empty()) throw Error("cannot write a file without a name");
-  const fs::file_status status = fs::status(target, ignored);
-  if (fs::is_directory(status)) throw Error("cannot write {}: it is a folder", path.string());
-  if (fs::exists(status) && !fs::is_regular_file(status)) return write_directly(target, bytes);
-
-  OpenTemporary opened = open_temporary(target);
-  TemporaryFile temporary(opened.path);
-  write_all(opened.file, bytes, path);
-  close_checked(opened.file, path);
-  if (::rename(temporary.path().c_str(), target.c_str()) != 0) {
-    throw Error("cannot write {}: {}", path.string(), reason(errno));
+  if (fs::is_directory(target, ignored)) {
+    throw Error("cannot write {}: it is a folder", path.string());
   }
-  temporary.keep();
+  return target;
+}
+
+bool is_device(const fs::path& target) {
+  std::error_code ignored;
+  const fs::file_status status = fs::status(target, ignored);
+  return fs::exists(status) && !fs::is_regular_file(status);
+}
+
+}  // namespace
+
+void write_file_atomically(const fs::path& path, std::string_view bytes) {
+  const fs::path target = checked_target(path);
+  if (is_device(target)) return write_directly(target, bytes);
+  Replacement(path, target, bytes).take_place();
+}
+
+void write_files_atomically(std::span<const FileContent> files) {
+  std::deque<Replacement> replacements;
+  for (const FileContent& file : files) {
+    const fs::path target = checked_target(file.path);
+    if (is_device(target)) throw Error("cannot write {}: it is a device", file.path.string());
+    replacements.emplace_back(file.path, target, file.bytes);
+  }
+  for (Replacement& replacement : replacements) replacement.take_place();
 }
 
 std::string read_file(const fs::path& path, std::size_t max_bytes) {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -13,6 +14,16 @@ namespace stillmap {
 /// never a part. A link is followed; a device (/dev/stdout) is written directly. Throws Error when
 /// anything fails (no such folder, not writable, disk full), and leaves no temporary file.
 void write_file_atomically(const std::filesystem::path& path, std::string_view bytes);
+
+struct FileContent {
+  std::filesystem::path path;
+  std::string bytes;
+};
+
+/// Writes several files, all of them or none: all bytes go to temporary names in the files' own
+/// folders, and only when all are there the names are taken, one after the other. Throws Error as
+/// write_file_atomically does, and for a device.
+void write_files_atomically(std::span<const FileContent> files);
 
 /// The whole content of a file. Throws Error when it cannot be read, is a folder, or is larger than
 /// `max_bytes`, before that much is allocated.

@@ -48,6 +48,31 @@ TEST(WriteFileAtomically, FollowsALink) {
   EXPECT_EQ(content_of(folder.path() / "real"), "new");
 }
 
+TEST(WriteFilesAtomically, WritesAll) {
+  const TemporaryFolder folder;
+  write_file_atomically(folder.path() / "a", "old");
+  write_files_atomically(
+      std::vector<FileContent>{{folder.path() / "a", "new"}, {folder.path() / "b", "b"}});
+  EXPECT_EQ(content_of(folder.path() / "a"), "new");
+  EXPECT_EQ(content_of(folder.path() / "b"), "b");
+  EXPECT_EQ(files_in(folder.path()), 2U);
+}
+
+TEST(WriteFilesAtomically, WritesNoneWhenOneCannotBe) {
+  const TemporaryFolder folder;
+  const fs::path a = folder.path() / "a";
+  const fs::path b = folder.path() / "b";
+  write_file_atomically(a, "old");
+  const std::string missing = (folder.path() / "none" / "c").string();
+  EXPECT_THAT(
+      error_of([&] {
+        write_files_atomically(std::vector<FileContent>{{a, "new"}, {b, "b"}, {missing, "c"}});
+      }),
+      HasSubstr(missing));
+  EXPECT_EQ(content_of(a), "old");
+  EXPECT_EQ(files_in(folder.path()), 1U);
+}
+
 TEST(WriteFileAtomically, NamesTheFileWhenTheFolderIsMissing) {
   const TemporaryFolder folder;
   const fs::path path = folder.path() / "none" / "a.txt";

@@ -140,6 +140,12 @@ CameraModel read_camera_yaml(const std::filesystem::path& path) {
   return camera;
 }
 
+CameraModel camera_by_name(const std::string& name_or_file) {
+  const bool is_file =
+      name_or_file.find('/') != std::string::npos || name_or_file.ends_with(".yaml");
+  return is_file ? read_camera_yaml(name_or_file) : builtin_camera(name_or_file);
+}
+
 std::string format_camera_yaml(const CameraModel& camera) {
   YAML::Emitter name;
   name << YAML::DoubleQuoted << camera.name;

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <optional>
 #include <span>
 #include <utility>
@@ -220,27 +221,53 @@ PointCloud read_ascii(const PlyHeader& header, std::string_view data, const std:
   return builder.take();
 }
 
+void append_binary(std::string& bytes, const PointCloud& cloud, std::size_t i) {
+  append_floats(bytes, cloud.positions[i]);
+  for (const std::uint8_t channel : cloud.colors[i]) bytes += static_cast<char>(channel);
+  bytes += static_cast<char>(cloud.labels.empty() ? 0 : cloud.labels[i]);
+  if (!cloud.normals.empty()) append_floats(bytes, cloud.normals[i]);
+}
+
+void append_ascii(std::string& text, const PointCloud& cloud, std::size_t i) {
+  const Eigen::Vector3f& p = cloud.positions[i];
+  const Rgb& color = cloud.colors[i];
+  const int label = cloud.labels.empty() ? 0 : cloud.labels[i];
+  fmt::format_to(std::back_inserter(text),
+                 "{} {} {} {} {} {} {}",
+                 p.x(),
+                 p.y(),
+                 p.z(),
+                 color[0],
+                 color[1],
+                 color[2],
+                 label);
+  if (!cloud.normals.empty()) {
+    const Eigen::Vector3f& n = cloud.normals[i];
+    fmt::format_to(std::back_inserter(text), " {} {} {}", n.x(), n.y(), n.z());
+  }
+  text += '\n';
+}
+
 }  // namespace
 
-std::string encode_ply(const PointCloud& cloud) {
+std::string encode_ply(const PointCloud& cloud, PlyFormat format) {
   const std::size_t count = cloud.size();
   STILLMAP_CHECK(cloud.colors.size() == count);
   STILLMAP_CHECK(cloud.labels.empty() || cloud.labels.size() == count);
   STILLMAP_CHECK(cloud.normals.empty() || cloud.normals.size() == count);
+  const bool binary = format == PlyFormat::kBinary;
   const bool with_normals = !cloud.normals.empty();
   std::string bytes = fmt::format(
-      "ply\nformat binary_little_endian 1.0\nelement vertex {}\n"
+      "ply\nformat {} 1.0\nelement vertex {}\n"
       "property float x\nproperty float y\nproperty float z\n"
       "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty uchar label\n{}"
       "end_header\n",
+      binary ? "binary_little_endian" : "ascii",
       count,
       with_normals ? "property float nx\nproperty float ny\nproperty float nz\n" : "");
-  bytes.reserve(bytes.size() + count * (with_normals ? 28 : 16));
+  bytes.reserve(bytes.size() + count * ((binary ? 16U : 40U) + (with_normals ? 12U : 0U)));
   for (std::size_t i = 0; i < count; ++i) {
-    append_floats(bytes, cloud.positions[i]);
-    for (const std::uint8_t channel : cloud.colors[i]) bytes += static_cast<char>(channel);
-    bytes += static_cast<char>(cloud.labels.empty() ? 0 : cloud.labels[i]);
-    if (with_normals) append_floats(bytes, cloud.normals[i]);
+    binary ? append_binary(bytes, cloud, i) : append_ascii(bytes, cloud, i);
   }
   return bytes;
 }

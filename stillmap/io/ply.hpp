@@ -8,9 +8,13 @@
 
 namespace stillmap {
 
-/// Binary little-endian PLY of a cloud: per point `float x y z`, `uchar red green blue`,
-/// `uchar label` (0 where the cloud has no labels) and, when it has normals, `float nx ny nz`.
-[[nodiscard]] std::string encode_ply(const PointCloud& cloud);
+enum class PlyFormat { kBinary, kAscii };
+
+/// PLY of a cloud, binary little-endian or text: per point `float x y z`, `uchar red green blue`,
+/// `uchar label` (0 where the cloud has no labels) and, when it has normals, `float nx ny nz`. Text
+/// has as many digits as it takes to read back the same bits.
+[[nodiscard]] std::string encode_ply(const PointCloud& cloud,
+                                     PlyFormat format = PlyFormat::kBinary);
 
 /// Reads the points of a PLY, binary little-endian or ASCII, with the properties in any order and
 /// of any scalar type; properties and elements of other names are skipped. Points without colours

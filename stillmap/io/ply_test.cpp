@@ -49,6 +49,24 @@ std::string binary(const std::string& count,
          "end_header\n" + data;
 }
 
+TEST(EncodePly, WritesTextOfTheFormat) {
+  PointCloud cloud = three_points();
+  cloud.positions[2] = {-4, 0.1F, 16777216};
+  EXPECT_EQ(encode_ply(cloud, PlyFormat::kAscii),
+            ascii("3",
+                  kXyz + "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+                         "property uchar label\n"
+                         "property float nx\nproperty float ny\nproperty float nz\n",
+                  "1.5 -2 3 1 2 3 0 0 0 1\n"
+                  "0 1e-07 0 255 0 128 15 0 -1 0\n"
+                  "-4 0.1 16777216 9 8 7 255 1 0 0\n"));
+  const PointCloud again = read(encode_ply(cloud, PlyFormat::kAscii));
+  EXPECT_EQ(again.positions, cloud.positions);
+  EXPECT_EQ(again.colors, cloud.colors);
+  EXPECT_EQ(again.labels, cloud.labels);
+  EXPECT_EQ(again.normals, cloud.normals);
+}
+
 TEST(EncodePly, WritesTheBytesOfTheFormat) {
   PointCloud cloud;
   cloud.positions = {{1.5F, -2, 3}};

@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "apps/commands.hpp"
+#include "stillmap/core/error.hpp"
+#include "stillmap/formats/floor_plane.hpp"
+#include "stillmap/formats/occupancy_grid.hpp"
+#include "stillmap/formats/octree.hpp"
+#include "stillmap/formats/pcd.hpp"
+#include "stillmap/io/atomic_file.hpp"
+#include "stillmap/io/camera_io.hpp"
+#include "stillmap/io/ply.hpp"
+#include "stillmap/io/trajectory_io.hpp"
+
+namespace stillmap {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ExportArguments {
+  std::string run_dir;
+  std::string ply;
+  std::string ply_ascii;
+  std::string pcd;
+  std::string pcd_ascii;
+  std::string octomap;
+  std::string grid;
+  bool upright = false;
+  std::string camera;
+  SpaceOptions space;
+  HeightBand band;
+};
+
+struct FormatOption {
+  const char* name;
+  std::string ExportArguments::*file;
+  std::vector<std::string> suffixes;
+  const char* help;
+};
+
+const std::vector<FormatOption>& format_options() {
+  static const std::vector<FormatOption> options = {
+      {"--ply", &ExportArguments::ply, {".ply"}, "the map's points as binary PLY"},
+      {"--ply-ascii", &ExportArguments::ply_ascii, {".ply"}, "the same as text"},
+      {"--pcd", &ExportArguments::pcd, {".pcd"}, "the points as binary PCD, for PCL"},
+      {"--pcd-ascii", &ExportArguments::pcd_ascii, {".pcd"}, "the same as text"},
+      {"--octomap",
+       &ExportArguments::octomap,
+       {".bt", ".ot"},
+       "occupied, free and unknown space; F.bt: OctoMap's binary tree, F.ot: with probabilities"},
+      {"--grid",
+       &ExportArguments::grid,
+       {".yaml", ".yml"},
+       "the ground for navigation, as ROS's map_server reads it: F.yaml and F.pgm beside it"}};
+  return options;
+}
+
+// What can be wrong before anything is read.
+void check_arguments(const ExportArguments& arguments) {
+  std::vector<fs::path> targets;
+  for (const FormatOption& option : format_options()) {
+    const fs::path file = arguments.*option.file;
+    if (file.empty()) continue;
+    if (std::ranges::find(option.suffixes, file.extension().string()) == option.suffixes.end()) {
+      throw Error("{} {}: expected a name that ends in {}",
+                  option.name,
+                  file.string(),
+                  fmt::join(option.suffixes, " or "));
+    }
+    const fs::path target = fs::absolute(file).lexically_normal();
+    if (std::ranges::find(targets, target) != targets.end()) {
+      throw Error("{} {}: another option names the same file", option.name, file.string());
+    }
+    if (target == fs::absolute(fs::path(arguments.run_dir) / "map.ply").lexically_normal()) {
+      throw Error("{} {}: the run's own map; choose another name", option.name, file.string());
+    }
+    targets.push_back(target);
+  }
+  if (targets.empty()) {
+    throw Error(
+        "nothing to export: give one of --ply, --ply-ascii, --pcd, --pcd-ascii, --octomap, "
+        "--grid (see stillmap export --help)");
+  }
+  if (!(arguments.band.min_m < arguments.band.max_m)) {
+    throw Error(
+        "--min-height {} is not below --max-height {}", arguments.band.min_m, arguments.band.max_m);
+  }
+}
+
+// What a run has left behind, as far as the exports need it.
+struct FinishedRun {
+  PointCloud map;
+  std::vector<Eigen::Isometry3d> T_world_keyframe;
+  std::optional<CameraModel> camera;  // where rays are needed
+};
+
+CameraModel run_camera(const ExportArguments& arguments) {
+  if (!arguments.camera.empty()) return camera_by_name(arguments.camera);
+  const fs::path file = fs::path(arguments.run_dir) / "camera.yaml";
+  if (!path_exists(file)) {
+    throw Error("{}: missing, as in folders of older versions; run again, or give --camera",
+                file.string());
+  }
+  return read_camera_yaml(file);
+}
+
+FinishedRun read_run(const ExportArguments& arguments) {
+  const fs::path folder = arguments.run_dir;
+  if (!path_exists(folder / "map.ply") || !path_exists(folder / "keyframes.txt")) {
+    throw Error(
+        "{}: not the folder of a finished run: expected map.ply and keyframes.txt in it, as "
+        "`stillmap run --out` writes them",
+        folder.string());
+  }
+  FinishedRun run;
+  run.map = read_ply(folder / "map.ply");
+  if (run.map.empty()) throw Error("{}: no points", (folder / "map.ply").string());
+  for (const StampedPose& keyframe : read_trajectory(folder / "keyframes.txt")) {
+    run.T_world_keyframe.push_back(keyframe.T_world_camera);
+  }
+  if (!arguments.octomap.empty() || !arguments.grid.empty()) run.camera = run_camera(arguments);
+  return run;
+}
+
+Eigen::Isometry3d find_floor_frame(const FinishedRun& run) {
+  const std::optional<FloorPlane> floor = find_floor(run.map.positions, run.T_world_keyframe);
+  if (floor) return floor_frame(*floor, run.T_world_keyframe.front());
+  throw Error(
+      "no floor found in the map, which --grid and --upright need: expected a plane of at least "
+      "half "
+      "a square metre below the cameras, held about upright, and nearly all of the map above it");
+}
+
+void transform(FinishedRun& run, const Eigen::Isometry3d& T) {
+  for (Eigen::Vector3f& p : run.map.positions) p = (T * p.cast<double>()).cast<float>();
+  for (Eigen::Vector3f& n : run.map.normals) n = (T.linear() * n.cast<double>()).cast<float>();
+  for (Eigen::Isometry3d& pose : run.T_world_keyframe) pose = T * pose;
+}
+
+void add_point_files(std::vector<FileContent>& files,
+                     const ExportArguments& arguments,
+                     const PointCloud& map) {
+  if (!arguments.ply.empty()) files.push_back({arguments.ply, encode_ply(map)});
+  if (!arguments.ply_ascii.empty()) {
+    files.push_back({arguments.ply_ascii, encode_ply(map, PlyFormat::kAscii)});
+  }
+  if (!arguments.pcd.empty()) files.push_back({arguments.pcd, encode_pcd(map, PcdFormat::kBinary)});
+  if (!arguments.pcd_ascii.empty()) {
+    files.push_back({arguments.pcd_ascii, encode_pcd(map, PcdFormat::kAscii)});
+  }
+}
+
+void add_octree_file(std::vector<FileContent>& files,
+                     const ExportArguments& arguments,
+                     const FinishedRun& run) {
+  const ObservedSpace space =
+      observe_space(run.map.positions, run.T_world_keyframe, *run.camera, arguments.space);
+  const OctreeFormat format =
+      arguments.octomap.ends_with(".bt") ? OctreeFormat::kBinary : OctreeFormat::kFull;
+  files.push_back({arguments.octomap, encode_octree(space, format)});
+}
+
+// `run` is in the grid's frame.
+void add_grid_files(std::vector<FileContent>& files,
+                    const ExportArguments& arguments,
+                    const FinishedRun& run,
+                    const Eigen::Isometry3d& T_grid_map) {
+  const OccupancyGrid grid = make_occupancy_grid(
+      run.map.positions, run.T_world_keyframe, *run.camera, arguments.space, arguments.band);
+  const fs::path image = fs::path(arguments.grid).replace_extension(".pgm");
+  files.push_back({image, encode_pgm(grid)});
+  files.push_back({arguments.grid, format_grid_yaml(grid, image.filename().string(), T_grid_map)});
+}
+
+void run_export(const ExportArguments& arguments) {
+  check_arguments(arguments);
+  FinishedRun run = read_run(arguments);
+  std::vector<FileContent> files;
+  Eigen::Isometry3d T_grid_map = Eigen::Isometry3d::Identity();
+  if (!arguments.grid.empty() || arguments.upright) T_grid_map = find_floor_frame(run);
+  if (arguments.upright) transform(run, T_grid_map);
+  add_point_files(files, arguments, run.map);
+  if (!arguments.octomap.empty()) add_octree_file(files, arguments, run);
+  if (!arguments.grid.empty()) {
+    if (!arguments.upright) transform(run, T_grid_map);
+    add_grid_files(files, arguments, run, T_grid_map);
+  }
+  write_files_atomically(files);
+  for (const FileContent& file : files) {
+    print_output(fmt::format("{:>11} bytes  {}\n", file.bytes.size(), file.path.string()));
+  }
+}
+
+// CLI::Range lets nan pass.
+CLI::Validator between(double low, double high) {
+  return {[low, high](std::string& text) -> std::string {
+            double value = 0;
+            const bool fits =
+                CLI::detail::lexical_cast(text, value) && value >= low && value <= high;
+            return fits ? "" : fmt::format("expected a number from {} to {}", low, high);
+          },
+          fmt::format("{} - {}", low, high)};
+}
+
+void add_settings(CLI::App& command, ExportArguments& arguments) {
+  command
+      .add_option("--resolution", arguments.space.resolution_m, "edge of a voxel or cell, metres")
+      ->check(between(0.005, 1))
+      ->capture_default_str();
+  command
+      .add_option("--max-range",
+                  arguments.space.max_range_m,
+                  "how far from a camera space is held to be free, metres")
+      ->check(between(0.1, 100))
+      ->capture_default_str();
+  command
+      .add_option("--min-height",
+                  arguments.band.min_m,
+                  "grid: what is lower above the floor is in nobody's way, metres")
+      ->check(between(0.01, 10))
+      ->capture_default_str();
+  command.add_option("--max-height", arguments.band.max_m, "grid: and what is higher, metres")
+      ->check(between(0.02, 20))
+      ->capture_default_str();
+  command.add_flag("--upright",
+                   arguments.upright,
+                   "all in the floor's frame (z up, 0 on the floor), not the map's own");
+  command.add_option("--camera",
+                     arguments.camera,
+                     "tum_fr1, tum_fr2, tum_fr3, bonn or a camera.yaml; instead of the run's own");
+}
+
+}  // namespace
+
+void add_export_command(CLI::App& app, CommandResult& /*result*/) {
+  CLI::App* command =
+      app.add_subcommand("export", "The map of a finished run in the formats of other programs");
+  const auto arguments = std::make_shared<ExportArguments>();
+  command->add_option("RUN_DIR", arguments->run_dir, "the --out folder of `stillmap run`")
+      ->required();
+  for (const FormatOption& option : format_options()) {
+    command->add_option(option.name, (*arguments).*option.file, option.help)->type_name("F");
+  }
+  add_settings(*command, *arguments);
+  command->footer(
+      "Examples:\n"
+      "  stillmap export result --pcd map.pcd --ply-ascii map.ply\n"
+      "  stillmap export result --octomap map.bt --resolution 0.03 --upright\n"
+      "  stillmap export result --grid room.yaml --min-height 0.05 --max-height 1.2\n"
+      "All files are written, or, when anything fails, none. docs/formats.md describes them.");
+  command->callback([arguments] { run_export(*arguments); });
+}
+
+}  // namespace stillmap
