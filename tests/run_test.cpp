@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "stillmap/io/camera_io.hpp"
 #include "stillmap/io/image_io.hpp"
 #include "stillmap/io/ply.hpp"
 #include "stillmap/io/trajectory_io.hpp"
@@ -89,6 +90,16 @@ TEST_F(Run, ItsConfigurationCanBeLoadedAgain) {
   EXPECT_TRUE(content("a/map.ply") == content("b/map.ply"));
   ASSERT_EQ(run("run wall --out c").exit_code, 0);
   EXPECT_LT(content("a/map.ply").size(), content("c/map.ply").size());  // coarser voxels, less
+}
+
+TEST_F(Run, ItsCameraCanBeUsedAgain) {
+  ASSERT_EQ(run("run wall --out a").exit_code, 0);
+  const CameraModel given = read_camera_yaml(folder_ / "wall" / "camera.yaml");
+  const CameraModel kept = read_camera_yaml(folder_ / "a" / "camera.yaml");
+  EXPECT_EQ(kept.width_px, given.width_px);
+  EXPECT_EQ(kept.fx, given.fx);
+  EXPECT_EQ(kept.cy, given.cy);
+  EXPECT_EQ(run("run wall --camera a/camera.yaml --out b").exit_code, 0);
 }
 
 TEST_F(Run, TakesPartsOfASequence) {

@@ -3,6 +3,7 @@
 
 #include "stillmap/core/error.hpp"
 #include "stillmap/io/atomic_file.hpp"
+#include "stillmap/io/camera_io.hpp"
 #include "stillmap/io/ply.hpp"
 #include "stillmap/io/trajectory_io.hpp"
 #include "stillmap/report/report_html.hpp"
@@ -30,6 +31,7 @@ void write_run_folder(const std::filesystem::path& folder,
   write_file_atomically(folder / "trajectory.txt", format_trajectory(result.trajectory));
   write_file_atomically(folder / "keyframes.txt", format_trajectory(result.keyframes));
   write_file_atomically(folder / "config.yaml", report.config_yaml);
+  write_file_atomically(folder / "camera.yaml", format_camera_yaml(report.camera));
   if (objects_jsonl) {
     write_file_atomically(folder / "objects.jsonl", *objects_jsonl);
   } else {
