@@ -132,6 +132,7 @@ void add_evaluate_command(CLI::App& app, CommandResult&) {
       *app.add_subcommand("evaluate", "measures results against truth")->require_subcommand(1);
   add_trajectory(evaluate);
   add_evaluate_map(evaluate);
+  add_evaluate_residue(evaluate);
 }
 
 }  // namespace stillmap

@@ -12,6 +12,7 @@ namespace stillmap {
 
 // What `stillmap evaluate` is made of.
 void add_evaluate_map(CLI::App& evaluate);
+void add_evaluate_residue(CLI::App& evaluate);
 
 struct TrajectoryFile {
   std::string file;

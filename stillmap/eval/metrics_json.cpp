@@ -73,6 +73,13 @@ Json map_quality_json(const std::optional<MapQuality>& known) {
           {"voxels", known ? Json(quality.voxels) : Json()}};
 }
 
+Json residue_json(const Residue& residue) {
+  return {{"ratio", residue.points > 0 ? Json(residue.ratio()) : Json()},
+          {"points", residue.points},
+          {"seen_through", residue.seen_through},
+          {"frames", residue.frames}};
+}
+
 Json frames_json(std::size_t total, std::size_t tracked) {
   const bool known = total > 0;
   const double ratio = known ? static_cast<double>(tracked) / static_cast<double>(total) : 0.0;

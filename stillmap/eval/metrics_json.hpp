@@ -9,6 +9,7 @@
 #include "stillmap/eval/ate.hpp"
 #include "stillmap/eval/map_quality.hpp"
 #include "stillmap/eval/rpe.hpp"
+#include "stillmap/eval/see_through.hpp"
 
 namespace stillmap {
 
@@ -24,6 +25,9 @@ namespace stillmap {
 /// `{sa, da, aa, ha, accuracy_m, completeness_m, completeness_ratio, ghost_ratio, ghost_volume_l,
 /// ghost_clusters, off_ratio_5cm, off_ratio_10cm, voxels}`.
 [[nodiscard]] nlohmann::ordered_json map_quality_json(const std::optional<MapQuality>& quality);
+
+/// `{ratio, points, seen_through, frames}`.
+[[nodiscard]] nlohmann::ordered_json residue_json(const Residue& residue);
 
 /// `{total, tracked, ratio}`: associated pairs of images, poses in the trajectory, their ratio.
 [[nodiscard]] nlohmann::ordered_json frames_json(std::size_t total, std::size_t tracked);

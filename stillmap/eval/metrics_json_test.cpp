@@ -54,6 +54,13 @@ TEST(MetricsJson, NamesTheFiguresOfAMap) {
             R"("ghost_clusters":null,"off_ratio_5cm":null,"off_ratio_10cm":null,"voxels":null})");
 }
 
+TEST(MetricsJson, NamesTheResidue) {
+  EXPECT_EQ(residue_json({.points = 8, .seen_through = 2, .frames = 5}).dump(),
+            R"({"ratio":0.25,"points":8,"seen_through":2,"frames":5})");
+  EXPECT_EQ(residue_json({.points = 0, .seen_through = 0, .frames = 5}).dump(),
+            R"({"ratio":null,"points":0,"seen_through":0,"frames":5})");
+}
+
 TEST(MetricsJson, GivesTheShareOfTrackedFrames) {
   EXPECT_EQ(frames_json(8, 6).dump(), R"({"total":8,"tracked":6,"ratio":0.75})");
   EXPECT_EQ(frames_json(0, 0).dump(), R"({"total":0,"tracked":0,"ratio":null})");
