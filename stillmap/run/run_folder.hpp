@@ -16,9 +16,9 @@ void prepare_run_folder(const std::filesystem::path& folder);
 
 /// Writes trajectory.txt, keyframes.txt, config.yaml, camera.yaml, objects.jsonl, map.ply,
 /// report.json and report.html, each whole or not at all, the trajectory first. Without
-/// `objects_jsonl` there is no such file afterwards, not even that of an earlier run. camera.yaml is
-/// the camera as used, with the rolling shutter that was learnt. Throws Error naming the file that
-/// could not be written.
+/// `objects_jsonl` there is no such file afterwards, not even that of an earlier run. camera.yaml
+/// is the camera as used, with the rolling shutter that was learnt. Throws Error naming the file
+/// that could not be written.
 void write_run_folder(const std::filesystem::path& folder,
                       const RunResult& result,
                       const RunReport& report,
