@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -9,10 +10,9 @@
 
 #include "apps/commands.hpp"
 #include "apps/commands/evaluate.hpp"
-#include "stillmap/core/error.hpp"
+#include "stillmap/eval/map_files.hpp"
 #include "stillmap/eval/map_quality.hpp"
 #include "stillmap/eval/metrics_json.hpp"
-#include "stillmap/io/ply.hpp"
 
 namespace stillmap {
 namespace {
@@ -26,12 +26,6 @@ struct MapArguments {
   bool json = false;
 };
 
-PointCloud read_cloud(const std::string& file) {
-  PointCloud cloud = read_ply(file);
-  check_extent(cloud, file);
-  return cloud;
-}
-
 // The map in the frame of the truth.
 PointCloud aligned(const PointCloud& map, const MapArguments& arguments) {
   if (arguments.groundtruth.empty()) return map;
@@ -40,16 +34,6 @@ PointCloud aligned(const PointCloud& map, const MapArguments& arguments) {
   PointCloud result = moved(map, ate.T_groundtruth_estimate);
   check_extent(result, arguments.map + ", moved to the ground truth");
   return result;
-}
-
-MapQuality measure(const MapArguments& arguments, const PointCloud& map) {
-  MapTruth truth{.static_surface = read_cloud(arguments.static_truth), .dynamic = std::nullopt};
-  if (truth.static_surface.empty()) {
-    throw Error("{}: no points, expected the static surface that the sequence shows",
-                arguments.static_truth);
-  }
-  if (!arguments.dynamic_truth.empty()) truth.dynamic = read_cloud(arguments.dynamic_truth);
-  return map_quality(aligned(map, arguments), truth);
 }
 
 std::string row(const char* name, const std::optional<double>& value, const char* unit = "") {
@@ -80,8 +64,13 @@ std::string as_table(const MapQuality& quality, std::size_t points) {
 }
 
 void evaluate_map(const MapArguments& arguments) {
-  const PointCloud map = read_cloud(arguments.map);
-  const MapQuality quality = measure(arguments, map);
+  const std::optional<std::filesystem::path> dynamic =
+      arguments.dynamic_truth.empty()
+          ? std::nullopt
+          : std::optional<std::filesystem::path>(arguments.dynamic_truth);
+  const MapTruth truth = read_map_truth(arguments.static_truth, dynamic);
+  const PointCloud map = read_map(arguments.map);
+  const MapQuality quality = map_quality(aligned(map, arguments), truth);
   nlohmann::ordered_json json = {{"map", {{"points", map.size()}}}};
   json["map"].update(map_quality_json(quality));
   print_output(arguments.json ? json.dump(2) + "\n" : as_table(quality, map.size()));

@@ -12,13 +12,12 @@
 #include "apps/commands.hpp"
 #include "apps/commands/evaluate.hpp"
 #include "stillmap/core/error.hpp"
+#include "stillmap/eval/map_files.hpp"
 #include "stillmap/eval/map_quality.hpp"
 #include "stillmap/eval/metrics_json.hpp"
 #include "stillmap/eval/pose_at.hpp"
 #include "stillmap/eval/see_through.hpp"
 #include "stillmap/io/camera_io.hpp"
-#include "stillmap/io/image_io.hpp"
-#include "stillmap/io/ply.hpp"
 #include "stillmap/io/tum_sequence.hpp"
 
 namespace stillmap {
@@ -83,10 +82,8 @@ PosedSequence as_true(const PointCloud& map,
 
 Residue measure(const ResidueArguments& arguments) {
   const std::filesystem::path run = arguments.run;
-  const std::string map_file = (run / "map.ply").string();
   const TrajectoryFile estimate = read_trajectory_file((run / "trajectory.txt").string());
-  PointCloud map = read_ply(map_file);
-  check_extent(map, map_file);
+  PointCloud map = read_map(run / "map.ply");
   const TumSequence sequence = open_sequence(arguments);
   // Also with ground truth, to see that the run is of this sequence.
   PosedSequence posed = as_estimated(std::move(map), sequence, estimate);

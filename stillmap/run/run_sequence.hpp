@@ -27,6 +27,8 @@ struct RunOptions {
   FrameSelection frames;
   int threads = 2;
   const Segmenter* segmenter = nullptr;  ///< what finds objects; none where null
+  /// Where there is one, the map is made once more with its poses.
+  std::optional<Trajectory> groundtruth;
   std::function<void(std::size_t done, std::size_t total)> on_progress;  ///< may be empty
   std::function<void(const std::string&)> on_warning;                    ///< may be empty
 };
@@ -36,6 +38,9 @@ struct SequenceRun {
   /// All that the run itself knows; `map` is not set. What concerns ground truth, configuration and
   /// version is the caller's.
   RunReport report;
+  /// The map with the key frames where ground truth has them, in the world of the run; key frames
+  /// without true pose are left out. Nothing without ground truth, or with too little to align.
+  std::optional<PointCloud> map_at_true_poses;
   /// What objects.jsonl says; nullopt when nothing looked for objects or nothing is done about
   /// them.
   std::optional<std::string> objects_jsonl;
