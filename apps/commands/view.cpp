@@ -101,11 +101,12 @@ void view(const ViewArguments& arguments) {
   const PictureSize size = parse_picture_size(arguments.size);
   const std::vector<PosedMap> maps = read_maps(arguments);
   const SceneFrame scene = scene_frame(maps.front().cloud, maps.front().cameras);
+  const PointCloud first = cut_open(maps.front().cloud, scene);
   std::vector<CaptionedPicture> pictures;
   for (std::size_t i = 0; i < maps.size(); ++i) {
     const PointCloud cut = cut_open(maps[i].cloud, scene);
     for (const NamedSide& side : sides) {
-      const View from = view_from(scene, side.side, size.width_px, size.height_px);
+      const View from = view_from(side.side, scene, first, {size.width_px, size.height_px});
       pictures.push_back({render_points(cut, from), caption(arguments, i, side.name)});
     }
   }

@@ -16,10 +16,19 @@ namespace stillmap {
 /// Where one looks at a map from: behind the cameras, their left, or straight above.
 enum class MapSide { kFront, kLeft, kTop };
 
-[[nodiscard]] View view_from(const SceneFrame& scene, MapSide side, int width_px, int height_px);
-
 /// The map without what hangs over the cameras' heads, and without strays far outside the scene.
 [[nodiscard]] PointCloud cut_open(const PointCloud& map, const SceneFrame& scene);
+
+struct ViewSize {
+  int width_px = 640;
+  int height_px = 480;
+};
+
+/// A view of a scene that is filled by the points of `map`, but for a few at its rims.
+[[nodiscard]] View view_from(MapSide side,
+                             const SceneFrame& scene,
+                             const PointCloud& map,
+                             const ViewSize& size);
 
 /// A picture with its name.
 struct CaptionedPicture {
