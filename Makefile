@@ -28,9 +28,11 @@ build: setup
 test: build
 	@ctest --preset release --parallel "$$(nproc)" --no-tests=error
 
-# The networks of `make models`, where they are, find the people; else the renderer tells, with a
-# network's faults.
-demo: build $(demo)/sequence
+# The networks of `make models`, where they are or can be had, find the people; else the renderer
+# tells, with a network's faults.
+demo: setup
+	@$(MAKE) --no-print-directory models || echo "networks    not to be had here: see above"
+	@$(MAKE) --no-print-directory $(demo)/sequence
 	@if $(program) segment $(demo)/sequence --out $(demo)/detections --segmenter auto 2>/dev/null; then \
 	  found=$(demo)/detections; echo "people      found by the networks of make models"; \
 	else \

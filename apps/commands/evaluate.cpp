@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "apps/commands/evaluate.hpp"
+
 #include <memory>
 #include <optional>
 #include <string>
@@ -34,20 +36,12 @@ struct TrajectoryFigures {
 };
 
 TrajectoryFigures measure(const TrajectoryArguments& arguments) {
-  const Trajectory groundtruth = read_trajectory(arguments.groundtruth);
-  const Trajectory estimate = read_trajectory(arguments.estimate);
-  std::optional<AteResult> ate = absolute_trajectory_error(groundtruth, estimate);
-  if (!ate) {
-    throw Error(
-        "{}: fewer than 3 poses are within {} s of one in {}; are both of the same sequence?",
-        arguments.estimate,
-        kMaxStampDifferenceS,
-        arguments.groundtruth);
-  }
+  const TrajectoryFile groundtruth = read_trajectory_file(arguments.groundtruth);
+  const TrajectoryFile estimate = read_trajectory_file(arguments.estimate);
   TrajectoryFigures figures;
-  figures.ate = std::move(*ate);
-  figures.rpe = relative_pose_error(groundtruth, estimate);
-  figures.tracked = estimate.size();
+  figures.ate = required_ate(groundtruth, estimate);
+  figures.rpe = relative_pose_error(groundtruth.poses, estimate.poses);
+  figures.tracked = estimate.poses.size();
   if (!arguments.sequence.empty()) {
     figures.frames = TumSequence::open(arguments.sequence).size();
     if (figures.tracked > *figures.frames) {
@@ -120,10 +114,25 @@ void add_trajectory(CLI::App& evaluate) {
 
 }  // namespace
 
+TrajectoryFile read_trajectory_file(const std::string& file) {
+  return {file, read_trajectory(file)};
+}
+
+AteResult required_ate(const TrajectoryFile& groundtruth, const TrajectoryFile& estimate) {
+  std::optional<AteResult> ate = absolute_trajectory_error(groundtruth.poses, estimate.poses);
+  if (ate) return std::move(*ate);
+  throw Error("{}: fewer than 3 poses are within {} s of one in {}; are both of the same sequence?",
+              estimate.file,
+              kMaxStampDifferenceS,
+              groundtruth.file);
+}
+
 void add_evaluate_command(CLI::App& app, CommandResult&) {
   CLI::App& evaluate =
       *app.add_subcommand("evaluate", "measures results against truth")->require_subcommand(1);
   add_trajectory(evaluate);
+  add_evaluate_map(evaluate);
+  add_evaluate_residue(evaluate);
 }
 
 }  // namespace stillmap

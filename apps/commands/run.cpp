@@ -17,6 +17,7 @@
 #include "stillmap/io/atomic_file.hpp"
 #include "stillmap/io/camera_io.hpp"
 #include "stillmap/io/trajectory_io.hpp"
+#include "stillmap/run/map_evaluation.hpp"
 #include "stillmap/run/run_folder.hpp"
 #include "stillmap/run/run_sequence.hpp"
 #include "version.hpp"
@@ -39,6 +40,7 @@ struct RunArguments {
   int threads = 2;
   bool live = false;
   std::string groundtruth;
+  std::string poses = "estimated";
 };
 
 std::string checked_mode(const std::string& mode) {
@@ -79,6 +81,44 @@ void evaluate(RunReport& report) {
   }
 }
 
+void choose_map(SequenceRun& run, const RunArguments& arguments) {
+  if (arguments.poses == "truth") {
+    if (run.map_at_true_poses) {
+      run.result.map = std::move(*run.map_at_true_poses);
+      run.report.map_at_true_poses = true;
+    } else {
+      run.report.warnings.push_back(
+          "--poses truth: fewer than three tracked frames have ground truth; the map has the "
+          "estimated poses");
+    }
+  }
+  run.report.map = &run.result.map;
+}
+
+void evaluate_maps(SequenceRun& run, const SequenceTruth& truth) {
+  RunReport& report = run.report;
+  try {
+    report.map_quality = run_map_quality(*report.map, report.estimate, truth);
+    if (report.map_at_true_poses) {
+      report.map_quality_true_poses = report.map_quality;
+    } else if (run.map_at_true_poses) {
+      report.map_quality_true_poses =
+          run_map_quality(*run.map_at_true_poses, report.estimate, truth);
+    }
+  } catch (const Error& error) {  // a map that is nowhere must not cost the results of a long run
+    report.warnings.push_back(fmt::format("no figures of the map: {}", error.what()));
+  }
+}
+
+std::string map_line(const RunReport& report) {
+  std::string text = fmt::format("map         {} points", report.map->size());
+  if (report.map_quality) text += fmt::format(", sa {:.3f}", report.map_quality->sa);
+  if (report.map_quality && report.map_quality->da) {
+    text += fmt::format(", da {:.3f}", *report.map_quality->da);
+  }
+  return text + (report.map_at_true_poses ? ", at true poses\n" : "\n");
+}
+
 std::string summary(const RunArguments& arguments, const RunReport& report) {
   std::string text = fmt::format("tracked     {} of {} frames, {} key frames\n",
                                  report.frames_tracked,
@@ -89,7 +129,7 @@ std::string summary(const RunArguments& arguments, const RunReport& report) {
                         report.ate->translation_m.rmse,
                         report.ate->pairs.size());
   }
-  text += fmt::format("map         {} points\n", report.map->size());
+  text += map_line(report);
   text += fmt::format("time        {:.1f} s, {:.1f} frames a second\n",
                       *report.wall_s,
                       static_cast<double>(report.frames_total) / *report.wall_s);
@@ -103,6 +143,11 @@ int run(const RunArguments& arguments) {
   const TumSequence sequence =
       TumSequence::open(arguments.sequence, {.camera = chosen_camera(arguments.camera)});
   std::optional<Trajectory> groundtruth = read_groundtruth(arguments, sequence);
+  if (arguments.poses == "truth" && !groundtruth) {
+    throw Error("--poses truth: {} has no groundtruth.txt; name one with --groundtruth",
+                sequence.folder().string());
+  }
+  const std::optional<SequenceTruth> truth = read_sequence_truth(sequence);
   const CameraModel& camera = sequence.camera();
   const std::unique_ptr<Segmenter> segmenter =
       arguments.segmenter == "none"
@@ -116,6 +161,7 @@ int run(const RunArguments& arguments) {
   options.frames.stride = arguments.stride;
   options.threads = arguments.threads;
   options.live = arguments.live;
+  if (truth || arguments.poses == "truth") options.groundtruth = groundtruth;
   ProgressBar progress("frames");
   options.on_progress = [&](std::size_t done, std::size_t total) { progress.show(done, total); };
   options.on_warning = [&](const std::string& warning) { progress.warn(warning); };
@@ -126,8 +172,9 @@ int run(const RunArguments& arguments) {
   report.version = kVersion;
   report.config_yaml = dump_yaml(list_fields(config));
   report.groundtruth = std::move(groundtruth);
-  report.map = &run.result.map;
   evaluate(report);
+  choose_map(run, arguments);
+  if (truth) evaluate_maps(run, *truth);
   write_run_folder(arguments.out, run.result, report, run.objects_jsonl);
   print_output(summary(arguments, report));
   return run.result.lost_at_end ? kLostForGood : 0;
@@ -165,6 +212,13 @@ void add_settings(CLI::App& command, RunArguments& arguments) {
   command.add_flag("--live",
                    arguments.live,
                    "look at no later frame: what a network misses is carried on from earlier ones");
+  command
+      .add_option("--poses",
+                  arguments.poses,
+                  "where the map's key frames are: as estimated, or where the ground truth (truth) "
+                  "has them; the trajectory is the estimate in any case")
+      ->check(CLI::IsMember({"estimated", "truth"}))
+      ->capture_default_str();
   command.add_option("--threads", arguments.threads, "1 or more; the result is the same")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -16,6 +14,7 @@
 #include <fmt/ranges.h>
 
 #include "apps/commands.hpp"
+#include "apps/picture_size.hpp"
 #include "apps/progress_bar.hpp"
 #include "stillmap/core/error.hpp"
 #include "stillmap/core/nearest_name.hpp"
@@ -96,27 +95,9 @@ std::string assets_line(const SyntheticOptions& options) {
       options.assets->chairs.size());
 }
 
-// One side of --size. Smaller images show nothing, larger ones are no camera's.
-int parse_side(std::string_view text, const std::string& size) {
-  constexpr int kSmallest = 32, kLargest = 4096;
-  int side = 0;
-  const char* end = text.data() + text.size();
-  const std::from_chars_result parsed = std::from_chars(text.data(), end, side);
-  if (parsed.ec != std::errc() || parsed.ptr != end || side < kSmallest || side > kLargest) {
-    throw Error("--size {}: expected WIDTHxHEIGHT such as 640x480, each from {} to {}",
-                size,
-                kSmallest,
-                kLargest);
-  }
-  return side;
-}
-
-CameraModel camera_of_size(const std::string& size) {
-  const std::string_view text = size;
-  const std::size_t cross = text.find('x');
-  const std::string_view height =
-      cross == std::string_view::npos ? std::string_view() : text.substr(cross + 1);
-  return synthetic_camera(parse_side(text.substr(0, cross), size), parse_side(height, size));
+CameraModel camera_of_size(const std::string& text) {
+  const PictureSize size = parse_picture_size(text);
+  return synthetic_camera(size.width_px, size.height_px);
 }
 
 void render(const SynthArguments& arguments) {

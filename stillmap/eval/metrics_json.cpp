@@ -21,6 +21,10 @@ Json rpe_statistics(const Statistics* s) {
           {"max", s->max}};
 }
 
+Json optional_json(const std::optional<double>& value) {
+  return value ? Json(*value) : Json();
+}
+
 }  // namespace
 
 Json ate_json(const std::optional<AteResult>& ate) {
@@ -48,6 +52,32 @@ Json rpe_json(const std::optional<RpeResult>& rpe) {
           {"pairs", rpe ? Json(rpe->pairs) : Json()},
           {"trans", rpe_statistics(rpe ? &rpe->translation_m : nullptr)},
           {"rot_deg", rpe_statistics(rpe ? &rpe->rotation_deg : nullptr)}};
+}
+
+Json map_quality_json(const std::optional<MapQuality>& known) {
+  const MapQuality quality = known.value_or(MapQuality());
+  const std::optional<double> sa = known ? std::optional(quality.sa) : std::nullopt;
+  const std::optional<GhostFigures>& ghosts = quality.ghosts;
+  return {{"sa", optional_json(sa)},
+          {"da", optional_json(quality.da)},
+          {"aa", optional_json(quality.aa)},
+          {"ha", optional_json(quality.ha)},
+          {"accuracy_m", optional_json(quality.accuracy_m)},
+          {"completeness_m", optional_json(quality.completeness_m)},
+          {"completeness_ratio", optional_json(sa)},
+          {"ghost_ratio", ghosts ? optional_json(ghosts->ratio) : Json()},
+          {"ghost_volume_l", ghosts ? Json(ghosts->volume_l) : Json()},
+          {"ghost_clusters", ghosts ? Json(ghosts->clusters) : Json()},
+          {"off_ratio_5cm", optional_json(quality.off_ratio_5cm)},
+          {"off_ratio_10cm", optional_json(quality.off_ratio_10cm)},
+          {"voxels", known ? Json(quality.voxels) : Json()}};
+}
+
+Json residue_json(const Residue& residue) {
+  return {{"ratio", residue.points > 0 ? Json(residue.ratio()) : Json()},
+          {"points", residue.points},
+          {"seen_through", residue.seen_through},
+          {"frames", residue.frames}};
 }
 
 Json frames_json(std::size_t total, std::size_t tracked) {

@@ -65,6 +65,14 @@ Tile time_tile(const RunReport& report) {
 
 Tile map_tile(const RunReport& report) {
   if (report.map == nullptr) return {"Map points", kDash, "no map was made"};
+  const std::optional<MapQuality>& quality = report.map_quality;
+  if (quality && quality->ghosts && quality->ghosts->ratio) {
+    return {"Map points",
+            count_text(report.map->size()),
+            fmt::format("{:.1f} % of the surface, {:.2f} % ghosts",
+                        100 * quality->sa,
+                        100 * *quality->ghosts->ratio)};
+  }
   return {"Map points",
           count_text(report.map->size()),
           report.map->empty() ? "the map is empty" : "of the static world"};

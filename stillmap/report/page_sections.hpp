@@ -35,6 +35,7 @@ struct MapHtml {
   std::string section;
   std::string script;  ///< goes to the end of the page; empty without a map
 };
+[[nodiscard]] std::string map_quality_html(const RunReport& report);  ///< empty without truth
 [[nodiscard]] MapHtml map_html(const RunReport& report);
 
 /// Where plots and captions begin to count seconds: the earliest stamp of the run's frames.

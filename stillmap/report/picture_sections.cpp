@@ -63,7 +63,8 @@ MapHtml map_html(const RunReport& report) {
                                figure_html(map_picture(report, view_from_above(scene, 960, 640)),
                                            "The map from above",
                                            "From above, without what is over the camera");
-  MapHtml html{.section = summary + kViewHtml + "<div class=\"columns\">" + pictures + "</div>",
+  MapHtml html{.section = summary + kViewHtml + "<div class=\"columns\">" + pictures + "</div>" +
+                          map_quality_html(report),
                .script = {}};
   html.script = fmt::format(
       "<script type=\"application/json\" id=\"map-data\">{}</script>\n<script>\n{}</script>",

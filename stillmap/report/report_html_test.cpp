@@ -243,6 +243,26 @@ TEST(ReportHtml, of_a_run_that_tracked_nothing) {
   EXPECT_THAT(page, HasSubstr("fewer than three poses"));
 }
 
+TEST(ReportHtml, says_how_good_the_map_is_where_truth_is_known) {
+  const PointCloud map = wall();
+  RunReport report = full_report(map);
+  EXPECT_THAT(report_html(report), Not(HasSubstr("Against the true surfaces")));
+  report.map_quality.emplace();
+  report.map_quality->sa = 0.9761;
+  report.map_quality->da = 0.5;
+  report.map_quality->ghosts = {.ratio = 0.0123, .volume_l = 2, .clusters = 3};
+  report.map_quality_true_poses.emplace();
+  report.map_quality_true_poses->sa = 0.9812;
+  const std::string page = report_html(report);
+  EXPECT_EQ(first_fault(page), "");
+  for (const char* text : {"Against the true surfaces",
+                           "97.6 % of the surface, 1.23 % ghosts",
+                           "<th>estimated poses</th><td>0.976</td><td>0.500</td>",
+                           "<th>true poses</th><td>0.981</td><td>\xE2\x80\x93</td>"}) {
+    EXPECT_THAT(page, HasSubstr(text));
+  }
+}
+
 TEST(ReportHtml, of_one_pose_without_ground_truth) {
   RunReport report;
   report.frames_total = report.frames_tracked = 1;

@@ -69,19 +69,25 @@ Json time_json(const RunReport& report) {
           {"stages_ms", stages}};
 }
 
-Json map_json(const PointCloud* map) {
-  if (map == nullptr)
-    return {{"points", nullptr}, {"bounds_min", nullptr}, {"bounds_max", nullptr}};
-  if (map->empty()) return {{"points", 0}, {"bounds_min", nullptr}, {"bounds_max", nullptr}};
+Json bounds_json(const PointCloud* map) {
+  if (map == nullptr || map->empty()) return {{"bounds_min", nullptr}, {"bounds_max", nullptr}};
   Eigen::Vector3f low = map->positions.front();
   Eigen::Vector3f high = low;
   for (const Eigen::Vector3f& p : map->positions) {
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   }
-  return {{"points", map->size()},
-          {"bounds_min", {low.x(), low.y(), low.z()}},
+  return {{"bounds_min", {low.x(), low.y(), low.z()}},
           {"bounds_max", {high.x(), high.y(), high.z()}}};
+}
+
+Json map_json(const RunReport& report) {
+  const PointCloud* map = report.map;
+  Json json = {{"points", map != nullptr ? Json(map->size()) : Json()}};
+  json.update(bounds_json(map));
+  json["poses"] = map != nullptr ? Json(report.map_at_true_poses ? "truth" : "estimated") : Json();
+  json.update(map_quality_json(report.map_quality));
+  return json;
 }
 
 /// Sums over objects of some kind; a sighting is an object in a frame.
@@ -135,7 +141,8 @@ std::string report_json(const RunReport& report) {
                      {"memory", {{"peak_mb", optional_json(report.peak_memory_mb)}}},
                      {"ate", ate_json(report.ate)},
                      {"rpe", rpe_json(report.rpe)},
-                     {"map", map_json(report.map)},
+                     {"map", map_json(report)},
+                     {"map_truth_poses", map_quality_json(report.map_quality_true_poses)},
                      {"dynamics", {{"mode", text_or_null(report.dynamics_mode)}}},
                      {"objects", objects_json(report.objects)},
                      {"warnings", report.warnings}};

@@ -171,6 +171,28 @@ TEST(ReportJson, an_empty_map_has_no_bounds) {
   EXPECT_TRUE(j.at("bounds_min").is_null());
 }
 
+TEST(ReportJson, says_how_good_the_map_is) {
+  const PointCloud map;
+  RunReport report;
+  EXPECT_TRUE(json::parse(report_json(report)).at("map").at("sa").is_null());
+  EXPECT_TRUE(json::parse(report_json(report)).at("map").at("poses").is_null());
+  report.map = &map;
+  report.map_quality.emplace();
+  report.map_quality->sa = 0.5;
+  report.map_quality->ghosts = {.ratio = 0.25, .volume_l = 2, .clusters = 3};
+  report.map_quality_true_poses.emplace();
+  report.map_quality_true_poses->sa = 0.75;
+  const json j = json::parse(report_json(report));
+  EXPECT_EQ(j.at("map").at("poses"), "estimated");
+  EXPECT_EQ(j.at("map").at("sa"), 0.5);
+  EXPECT_EQ(j.at("map").at("completeness_ratio"), 0.5);
+  EXPECT_EQ(j.at("map").at("ghost_ratio"), 0.25);
+  EXPECT_EQ(j.at("map").at("ghost_clusters"), 3);
+  EXPECT_TRUE(j.at("map").at("da").is_null());
+  EXPECT_EQ(j.at("map_truth_poses").at("sa"), 0.75);
+  EXPECT_TRUE(j.at("map_truth_poses").at("ghost_ratio").is_null());
+}
+
 TEST(ReportJson, hostile_values_stay_json) {
   RunReport report;
   report.sequence = "a\"\\\n\xff</script>";

@@ -16,6 +16,7 @@
 #include "stillmap/core/point_cloud.hpp"
 #include "stillmap/core/trajectory.hpp"
 #include "stillmap/eval/ate.hpp"
+#include "stillmap/eval/map_quality.hpp"
 #include "stillmap/eval/rpe.hpp"
 
 namespace stillmap {
@@ -116,6 +117,9 @@ struct RunReport {
 
   std::vector<SampleFrame> samples;  ///< about eight, in order
   const PointCloud* map = nullptr;   ///< not owned, outlives the report; nullptr when none was made
+  bool map_at_true_poses = false;    ///< made with the poses of ground truth, not the estimate's
+  std::optional<MapQuality> map_quality;             ///< of `map`
+  std::optional<MapQuality> map_quality_true_poses;  ///< of the map made with true poses
   std::vector<std::string> warnings;
 };
 

@@ -152,7 +152,7 @@ std::vector<std::size_t> points_in_scene(const PointCloud& map, const SceneFrame
   return inside;
 }
 
-View view_along(const SceneFrame& scene, int width_px, int height_px) {
+View view_turned(const SceneFrame& scene, const GazeTurn& turn, int width_px, int height_px) {
   View view;
   view.width_px = width_px;
   view.height_px = height_px;
@@ -161,16 +161,19 @@ View view_along(const SceneFrame& scene, int width_px, int height_px) {
   if (scene.box.isEmpty()) return view;
   const Eigen::AlignedBox3d box = scene.box.merged(scene.cameras);
   const Eigen::Vector3d target = box.center();
-  const double pitch = 25 * kDegree;
-  const Eigen::Vector3d forward(0, std::sin(pitch), std::cos(pitch));
-  const Eigen::Vector3d down(0, std::cos(pitch), -std::sin(pitch));
+  const Eigen::Vector3d ahead(std::sin(turn.right), 0, std::cos(turn.right));
+  const Eigen::Vector3d right(std::cos(turn.right), 0, -std::sin(turn.right));
+  const Eigen::Vector3d forward =
+      std::cos(turn.down) * ahead + std::sin(turn.down) * Eigen::Vector3d::UnitY();
+  const Eigen::Vector3d down =
+      std::cos(turn.down) * Eigen::Vector3d::UnitY() - std::sin(turn.down) * ahead;
   // As near as the box's corners allow, each of which must be in the picture; a little nearer, as
   // hardly anything lies in corners.
   double distance = 0.5;
   for (int i = 0; i < 8; ++i) {
     const Eigen::Vector3d corner =
         box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)) - target;
-    const double aside = std::abs(corner.x()) / (0.5 * width_px);
+    const double aside = std::abs(corner.dot(right)) / (0.5 * width_px);
     const double below = std::abs(corner.dot(down)) / (0.5 * height_px);
     distance = std::max(distance, view.scale * std::max(aside, below) - corner.dot(forward));
   }
@@ -179,6 +182,10 @@ View view_along(const SceneFrame& scene, int width_px, int height_px) {
   view.T_camera_world = look_at(
       R_world_level * eye, R_world_level * target, R_world_level * Eigen::Vector3d::UnitY());
   return view;
+}
+
+View view_along(const SceneFrame& scene, int width_px, int height_px) {
+  return view_turned(scene, {.right = 0, .down = 25 * kDegree}, width_px, height_px);
 }
 
 double head_height(const SceneFrame& scene) {

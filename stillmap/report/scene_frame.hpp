@@ -30,6 +30,16 @@ struct SceneFrame {
 [[nodiscard]] std::vector<std::size_t> points_in_scene(const PointCloud& map,
                                                        const SceneFrame& scene);
 
+/// A perspective view of the whole scene, in the direction that is turned from the cameras' by
+/// `right` and then by `down`, radians (down: from 0 to under a right angle).
+struct GazeTurn {
+  double right = 0, down = 0;
+};
+[[nodiscard]] View view_turned(const SceneFrame& scene,
+                               const GazeTurn& turn,
+                               int width_px,
+                               int height_px);
+
 /// A perspective view along the scene from behind and slightly above the cameras.
 [[nodiscard]] View view_along(const SceneFrame& scene, int width_px, int height_px);
 

@@ -7,6 +7,8 @@
 #include <sys/resource.h>
 
 #include "stillmap/core/error.hpp"
+#include "stillmap/eval/ate.hpp"
+#include "stillmap/eval/pose_at.hpp"
 #include "stillmap/run/frame_source.hpp"
 #include "stillmap/run/object_log.hpp"
 #include "stillmap/run/object_source.hpp"
@@ -124,6 +126,25 @@ void skip_frame(RunReport& report,
   if (options.on_warning) options.on_warning(report.warnings.back());
 }
 
+void add_map_at_true_poses(SequenceRun& run, const System& system, const Trajectory& truth) {
+  const std::optional<AteResult> ate = absolute_trajectory_error(truth, run.result.trajectory);
+  if (!ate) return;
+  const Eigen::Isometry3d T_world_truth = ate->T_groundtruth_estimate.inverse();
+  std::vector<std::optional<Eigen::Isometry3d>> poses;
+  for (const StampedPose& keyframe : run.result.keyframes) {
+    poses.push_back(pose_at(truth, keyframe.stamp.seconds));
+    if (poses.back()) poses.back() = T_world_truth * *poses.back();
+  }
+  const auto unknown = std::ranges::count_if(poses, [](const auto& pose) { return !pose; });
+  if (unknown > 0) {
+    run.report.warnings.push_back(fmt::format(
+        "{} of {} key frames have no true pose and are left out of the map at true poses",
+        unknown,
+        poses.size()));
+  }
+  run.map_at_true_poses = system.cloud_with_poses(poses);
+}
+
 }  // namespace
 
 FrameSelection parse_frames(const std::string& text) {
@@ -204,6 +225,7 @@ SequenceRun run_sequence(const TumSequence& sequence,
   report.keyframes = run.result.keyframes;
   report.wall_s = wall.lap_ms() / 1000.0;
   report.peak_memory_mb = peak_memory_mb();
+  if (options.groundtruth) add_map_at_true_poses(run, system, *options.groundtruth);
   return run;
 }
 

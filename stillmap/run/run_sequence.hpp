@@ -28,6 +28,8 @@ struct RunOptions {
   int threads = 2;
   bool live = false;  ///< no frame waits for later ones: what a network misses is carried forward
   const Segmenter* segmenter = nullptr;  ///< what finds objects; none where null
+  /// Where there is one, the map is made once more with its poses.
+  std::optional<Trajectory> groundtruth;
   std::function<void(std::size_t done, std::size_t total)> on_progress;  ///< may be empty
   std::function<void(const std::string&)> on_warning;                    ///< may be empty
 };
@@ -37,6 +39,9 @@ struct SequenceRun {
   /// All that the run itself knows; `map` is not set. What concerns ground truth, configuration and
   /// version is the caller's.
   RunReport report;
+  /// The map with the key frames where ground truth has them, in the world of the run; key frames
+  /// without true pose are left out. Nothing without ground truth, or with too little to align.
+  std::optional<PointCloud> map_at_true_poses;
   /// What objects.jsonl says; nullopt when nothing looked for objects or nothing is done about
   /// them.
   std::optional<std::string> objects_jsonl;

@@ -182,9 +182,19 @@ Trajectory System::final_trajectory() const {
 }
 
 PointCloud System::final_cloud() const {
+  std::vector<std::optional<Eigen::Isometry3d>> poses;
+  for (const auto& [id, keyframe] : map_.keyframes()) poses.emplace_back(keyframe.T_world_camera);
+  return cloud_with_poses(poses);
+}
+
+PointCloud System::cloud_with_poses(
+    std::span<const std::optional<Eigen::Isometry3d>> T_world_keyframes) const {
+  STILLMAP_CHECK(T_world_keyframes.size() == map_.keyframes().size());
   std::vector<PosedCloud> posed;
+  std::size_t i = 0;
   for (const auto& [id, keyframe] : map_.keyframes()) {
-    posed.push_back({keyframe.T_world_camera, clouds_.at(id).get()});
+    const std::optional<Eigen::Isometry3d>& T_world_keyframe = T_world_keyframes[i++];
+    if (T_world_keyframe) posed.push_back({*T_world_keyframe, clouds_.at(id).get()});
   }
   return global_cloud(posed, config_.cloud.voxel_size_m);
 }

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "stillmap/cloud/global_cloud.hpp"
 #include "stillmap/core/rgbd_frame.hpp"
@@ -41,6 +42,11 @@ class System {
 
   /// Ends the run: waits for pending work and assembles the cloud. Call once.
   [[nodiscard]] RunResult finish();
+
+  /// The cloud as it would be with the key frames at other poses, in the order of
+  /// RunResult::keyframes; those without are left out. After finish().
+  [[nodiscard]] PointCloud cloud_with_poses(
+      std::span<const std::optional<Eigen::Isometry3d>> T_world_keyframes) const;
 
   [[nodiscard]] const Map& map() const { return map_; }
   /// Readout time of the camera's rolling shutter, as learnt so far.

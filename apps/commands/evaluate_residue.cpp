@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "apps/commands.hpp"
+#include "apps/commands/evaluate.hpp"
+#include "stillmap/core/error.hpp"
+#include "stillmap/eval/map_files.hpp"
+#include "stillmap/eval/map_quality.hpp"
+#include "stillmap/eval/metrics_json.hpp"
+#include "stillmap/eval/pose_at.hpp"
+#include "stillmap/eval/see_through.hpp"
+#include "stillmap/io/camera_io.hpp"
+#include "stillmap/io/tum_sequence.hpp"
+
+namespace stillmap {
+namespace {
+
+struct ResidueArguments {
+  std::string run;
+  std::string sequence;
+  std::string groundtruth;
+  bool json = false;
+};
+
+/// The map and the frames that test it, all in one world.
+struct PosedSequence {
+  PointCloud map;
+  std::map<std::uint32_t, Eigen::Isometry3d> T_world_camera;  ///< of frames
+};
+
+// The camera of the run; a run of an earlier version has not kept it.
+TumSequence open_sequence(const ResidueArguments& arguments) {
+  const std::filesystem::path camera = std::filesystem::path(arguments.run) / "camera.yaml";
+  if (!std::filesystem::exists(camera)) return TumSequence::open(arguments.sequence);
+  return TumSequence::open(arguments.sequence, {.camera = read_camera_yaml(camera)});
+}
+
+// The frames that the run has tracked, in its own world.
+PosedSequence as_estimated(PointCloud map,
+                           const TumSequence& sequence,
+                           const TrajectoryFile& estimate) {
+  std::map<std::string, std::uint32_t> frame_of;
+  for (std::uint32_t i = 0; i < sequence.size(); ++i) {
+    frame_of[sequence.entry(FrameId(i)).stamp.text] = i;
+  }
+  PosedSequence posed{.map = std::move(map), .T_world_camera = {}};
+  for (const StampedPose& pose : estimate.poses) {
+    const auto found = frame_of.find(pose.stamp.text);
+    if (found == frame_of.end()) {
+      throw Error("{}: {} has no frame of the stamp {}; is the run of this sequence?",
+                  estimate.file,
+                  sequence.folder().string(),
+                  pose.stamp.text);
+    }
+    posed.T_world_camera[found->second] = pose.T_world_camera;
+  }
+  return posed;
+}
+
+// All frames that truth has poses for, in its world.
+PosedSequence as_true(const PointCloud& map,
+                      const TumSequence& sequence,
+                      const TrajectoryFile& groundtruth,
+                      const TrajectoryFile& estimate) {
+  const AteResult ate = required_ate(groundtruth, estimate);
+  PosedSequence posed{.map = moved(map, ate.T_groundtruth_estimate), .T_world_camera = {}};
+  for (std::uint32_t i = 0; i < sequence.size(); ++i) {
+    const double stamp_s = sequence.entry(FrameId(i)).stamp.seconds;
+    const std::optional<Eigen::Isometry3d> pose = pose_at(groundtruth.poses, stamp_s);
+    if (pose) posed.T_world_camera[i] = *pose;
+  }
+  return posed;
+}
+
+Residue measure(const ResidueArguments& arguments) {
+  const std::filesystem::path run = arguments.run;
+  const TrajectoryFile estimate = read_trajectory_file((run / "trajectory.txt").string());
+  PointCloud map = read_map(run / "map.ply");
+  const TumSequence sequence = open_sequence(arguments);
+  // Also with ground truth, to see that the run is of this sequence.
+  PosedSequence posed = as_estimated(std::move(map), sequence, estimate);
+  if (!arguments.groundtruth.empty()) {
+    posed = as_true(posed.map, sequence, read_trajectory_file(arguments.groundtruth), estimate);
+  }
+  SeeThroughTest test(sequence.camera(), std::move(posed.map.positions));
+  for (const auto& [frame, T_world_camera] : posed.T_world_camera) {
+    test.add(sequence.read(FrameId(frame))->depth, T_world_camera);
+  }
+  return test.result();
+}
+
+void evaluate_residue(const ResidueArguments& arguments) {
+  const Residue residue = measure(arguments);
+  if (arguments.json) {
+    const nlohmann::ordered_json json = {{"residue", residue_json(residue)}};
+    print_output(json.dump(2) + "\n");
+    return;
+  }
+  print_output(fmt::format(
+      "residue     {:.4f} %\n{} of {} points are seen through by at least {} of {} frames\n",
+      100 * residue.ratio(),
+      residue.seen_through,
+      residue.points,
+      kSeeThroughFrames,
+      residue.frames));
+}
+
+}  // namespace
+
+void add_evaluate_residue(CLI::App& evaluate) {
+  const std::shared_ptr<ResidueArguments> arguments = std::make_shared<ResidueArguments>();
+  CLI::App& command = *evaluate.add_subcommand(
+      "residue", "what of a run's map its own depth images see through; needs no truth");
+  command.add_option("RUN", arguments->run, "folder of the run")->required();
+  command.add_option("SEQUENCE", arguments->sequence, "folder of its sequence")->required();
+  command.add_option("--groundtruth",
+                     arguments->groundtruth,
+                     "true trajectory: test with all frames of the sequence, at its poses");
+  command.add_flag("--json", arguments->json, "print JSON and nothing else");
+  command.callback([arguments] { evaluate_residue(*arguments); });
+}
+
+}  // namespace stillmap

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "apps/commands.hpp"
+#include "apps/picture_size.hpp"
+#include "stillmap/core/error.hpp"
+#include "stillmap/core/nearest_name.hpp"
+#include "stillmap/eval/ate.hpp"
+#include "stillmap/eval/map_files.hpp"
+#include "stillmap/io/atomic_file.hpp"
+#include "stillmap/io/image_io.hpp"
+#include "stillmap/io/trajectory_io.hpp"
+#include "stillmap/report/map_views.hpp"
+
+namespace stillmap {
+namespace {
+
+struct ViewArguments {
+  std::vector<std::string> maps;
+  std::vector<std::string> names;
+  std::string out;
+  std::string from = "all";
+  std::string size = "640x480";
+  std::string groundtruth;
+};
+
+struct NamedSide {
+  std::string_view name;
+  MapSide side;
+};
+constexpr std::array<NamedSide, 3> kSides = {
+    {{"front", MapSide::kFront}, {"left", MapSide::kLeft}, {"top", MapSide::kTop}}};
+
+std::vector<NamedSide> chosen_sides(const std::string& from) {
+  std::vector<std::string> names = {"all"};
+  std::vector<NamedSide> sides;
+  for (const NamedSide& side : kSides) {
+    names.emplace_back(side.name);
+    if (from == "all" || from == side.name) sides.push_back(side);
+  }
+  if (sides.empty()) throw Error("--from {}: {}", from, name_hint(from, names));
+  return sides;
+}
+
+struct PosedMap {
+  PointCloud cloud;
+  Trajectory cameras;  ///< of its run; empty when there is none beside it
+};
+
+PosedMap read_posed_map(const std::string& file) {
+  PosedMap map{.cloud = read_map(file), .cameras = {}};
+  if (map.cloud.empty()) throw Error("{}: no points, nothing to see", file);
+  const std::filesystem::path trajectory =
+      std::filesystem::path(file).parent_path() / "trajectory.txt";
+  if (std::filesystem::exists(trajectory)) map.cameras = read_trajectory(trajectory);
+  return map;
+}
+
+// Into the frame of ground truth, which is that of maps without a run.
+PosedMap in_truth(PosedMap map, const Trajectory& groundtruth, const std::string& file) {
+  if (map.cameras.empty()) {
+    map.cameras = groundtruth;
+    return map;
+  }
+  const std::optional<AteResult> ate = absolute_trajectory_error(groundtruth, map.cameras);
+  if (!ate) throw Error("{}: fewer than 3 poses of its run have ground truth", file);
+  const Eigen::Isometry3d& T = ate->T_groundtruth_estimate;
+  map.cloud = moved(std::move(map.cloud), T);
+  for (StampedPose& pose : map.cameras) pose.T_world_camera = T * pose.T_world_camera;
+  return map;
+}
+
+std::vector<PosedMap> read_maps(const ViewArguments& arguments) {
+  Trajectory groundtruth;
+  if (!arguments.groundtruth.empty()) groundtruth = read_trajectory(arguments.groundtruth);
+  std::vector<PosedMap> maps;
+  for (const std::string& file : arguments.maps) {
+    maps.push_back(read_posed_map(file));
+    if (!groundtruth.empty()) maps.back() = in_truth(std::move(maps.back()), groundtruth, file);
+  }
+  return maps;
+}
+
+std::string caption(const ViewArguments& arguments, std::size_t map, std::string_view side) {
+  std::string text = map < arguments.names.size() ? arguments.names[map] : "";
+  if (text.empty()) return std::string(side);
+  return fmt::format("{}, {}", text, side);
+}
+
+void view(const ViewArguments& arguments) {
+  const std::vector<NamedSide> sides = chosen_sides(arguments.from);
+  const PictureSize size = parse_picture_size(arguments.size);
+  const std::vector<PosedMap> maps = read_maps(arguments);
+  const SceneFrame scene = scene_frame(maps.front().cloud, maps.front().cameras);
+  const PointCloud first = cut_open(maps.front().cloud, scene);
+  std::vector<CaptionedPicture> pictures;
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    const PointCloud cut = cut_open(maps[i].cloud, scene);
+    for (const NamedSide& side : sides) {
+      const View from = view_from(side.side, scene, first, {size.width_px, size.height_px});
+      pictures.push_back({render_points(cut, from), caption(arguments, i, side.name)});
+    }
+  }
+  const std::size_t columns = sides.size() > 1 ? sides.size() : pictures.size();
+  write_file_atomically(arguments.out, encode_png(tile_pictures(pictures, columns)));
+}
+
+}  // namespace
+
+void add_view_command(CLI::App& app, CommandResult&) {
+  CLI::App* command = app.add_subcommand("view", "Pictures of maps, without a window");
+  const auto arguments = std::make_shared<ViewArguments>();
+  command
+      ->add_option("MAP",
+                   arguments->maps,
+                   "PLY files, all of one place and in one frame; the first says where one looks "
+                   "from, by trajectory.txt beside it")
+      ->required();
+  command->add_option("--out", arguments->out, "the picture, PNG")->required();
+  command->add_option("--from", arguments->from, "front, left, top or all")->capture_default_str();
+  command->add_option("--size", arguments->size, "WIDTHxHEIGHT in pixels of each view")
+      ->capture_default_str();
+  command->add_option("--name", arguments->names, "of a map, as caption; repeatable, in order")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command->add_option("--groundtruth",
+                      arguments->groundtruth,
+                      "trajectory that brings maps of several runs, and truth, into one frame");
+  command->footer(
+      "Examples:\n"
+      "  stillmap view result/map.ply --out map.png\n"
+      "  stillmap view off/map.ply full/map.ply --from top --out both.png\n"
+      "  stillmap view full/map.ply office/truth/static_map.ply --groundtruth "
+      "office/groundtruth.txt --out truth.png");
+  command->callback([arguments] { view(*arguments); });
+}
+
+}  // namespace stillmap
