@@ -63,7 +63,9 @@ TEST(FindFloor, TrustsThatCamerasAreAboutUpright) {
     }
     const std::optional<FloorPlane> floor = find_floor(room.cloud.positions, room.poses);
     EXPECT_EQ(floor.has_value(), roll_deg < 90);
-    if (floor) EXPECT_LT(degrees_between(floor->up, Eigen::Vector3d::UnitZ()), 0.2);
+    if (floor) {
+      EXPECT_LT(degrees_between(floor->up, Eigen::Vector3d::UnitZ()), 0.2);
+    }
   }
 }
 
