@@ -12,6 +12,7 @@
 #include "stillmap/run/frame_source.hpp"
 #include "stillmap/run/object_log.hpp"
 #include "stillmap/run/object_source.hpp"
+#include "stillmap/run/sample_frame.hpp"
 #include "stillmap/system/stopwatch.hpp"
 
 namespace stillmap {
@@ -39,58 +40,6 @@ double peak_memory_mb() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
-}
-
-SampleObject make_sample_object(const TrackedObject& object, const ObjectState& state) {
-  const PixelBox& box = state.box;
-  return {.track = state.track.value,
-          .class_name = object.detection.class_name,
-          .reason = std::string(reason_name(state.reason)),
-          .dynamic = state.dynamic,
-          .filled = state.filled,
-          .box_px = Eigen::AlignedBox2d(Eigen::Vector2d(box.x0, box.y0),
-                                        Eigen::Vector2d(box.x1, box.y1))};
-}
-
-SampleFate sample_fate(FeatureFate fate, bool tracked) {
-  switch (fate) {
-    case FeatureFate::kMissingDepth:
-      return SampleFate::kMissingDepth;
-    case FeatureFate::kUnstableDepth:
-      return SampleFate::kDepthJump;
-    case FeatureFate::kDynamic:
-      return SampleFate::kDynamic;
-    case FeatureFate::kStaticInBox:
-      return SampleFate::kStaticInBox;
-    case FeatureFate::kStable:
-      break;
-  }
-  return tracked ? SampleFate::kTracked : SampleFate::kUntracked;
-}
-
-SampleFrame make_sample(const RgbdFrame& frame, const FrameResult& result) {
-  SampleFrame sample;
-  sample.stamp = frame.stamp;
-  sample.image = frame.color;
-  const TrackedFrame& tracked = result.tracked;
-  const FrameDynamics& dynamics = result.dynamics;
-  for (std::size_t i = 0; i < tracked.landmarks.size(); ++i) {
-    // Without dynamics no feature is judged.
-    const FeatureFate fate = dynamics.fates.empty() ? FeatureFate::kStable : dynamics.fates[i];
-    sample.features.push_back(
-        {tracked.features->raw_px[i], sample_fate(fate, tracked.landmarks[i].valid())});
-  }
-  for (const FatedFeature& feature : dynamics.dropped) {
-    sample.features.push_back({feature.raw_px, sample_fate(feature.fate, false)});
-  }
-  for (std::size_t i = 0; i < dynamics.judged.states.size(); ++i) {
-    sample.objects.push_back(
-        make_sample_object(dynamics.objects.objects[i], dynamics.judged.states[i]));
-  }
-  sample.raw_mask = dynamics.judged.mask.raw;
-  sample.extended_mask = dynamics.judged.mask.extended;
-  sample.jumps = dynamics.judged.mask.jumps;
-  return sample;
 }
 
 void add_stage_time(std::vector<StageTimes>& stages, std::string_view name, double ms) {
@@ -143,6 +92,16 @@ void add_map_at_true_poses(SequenceRun& run, const System& system, const Traject
         poses.size()));
   }
   run.map_at_true_poses = system.cloud_with_poses(poses);
+}
+
+void finish_report(SequenceRun& run, const TumSequence& sequence, const System& system) {
+  RunReport& report = run.report;
+  report.camera = sequence.camera();
+  report.camera.readout_s = system.readout_s();
+  report.frames_tracked = run.result.trajectory.size();
+  report.estimate = run.result.trajectory;
+  report.keyframes = run.result.keyframes;
+  report.peak_memory_mb = peak_memory_mb();
 }
 
 }  // namespace
@@ -218,13 +177,8 @@ SequenceRun run_sequence(const TumSequence& sequence,
     run.objects_jsonl = objects_jsonl(log, run.result.trajectory);
     report.objects = summarize_objects(log);
   }
-  report.camera = sequence.camera();
-  report.camera.readout_s = system.readout_s();
-  report.frames_tracked = run.result.trajectory.size();
-  report.estimate = run.result.trajectory;
-  report.keyframes = run.result.keyframes;
+  finish_report(run, sequence, system);
   report.wall_s = wall.lap_ms() / 1000.0;
-  report.peak_memory_mb = peak_memory_mb();
   if (options.groundtruth) add_map_at_true_poses(run, system, *options.groundtruth);
   return run;
 }
