@@ -13,7 +13,7 @@ namespace stillmap {
 enum class RandomPurpose : std::uint32_t {
   kAbsolutePose = 1,
   kEpipolarGeometry = 2,
-  kFloorPlane = 3
+  kFloorPlane = 4
 };
 
 /// A fresh generator that depends on the run's seed, the frame and the purpose alone.
