@@ -14,7 +14,7 @@
 #include "apps/picture_size.hpp"
 #include "stillmap/core/error.hpp"
 #include "stillmap/core/nearest_name.hpp"
-#include "stillmap/eval/ate.hpp"
+#include "stillmap/eval/map_alignment.hpp"
 #include "stillmap/eval/map_files.hpp"
 #include "stillmap/io/atomic_file.hpp"
 #include "stillmap/io/image_io.hpp"
@@ -71,11 +71,10 @@ PosedMap in_truth(PosedMap map, const Trajectory& groundtruth, const std::string
     map.cameras = groundtruth;
     return map;
   }
-  const std::optional<AteResult> ate = absolute_trajectory_error(groundtruth, map.cameras);
-  if (!ate) throw Error("{}: fewer than 3 poses of its run have ground truth", file);
-  const Eigen::Isometry3d& T = ate->T_groundtruth_estimate;
-  map.cloud = moved(std::move(map.cloud), T);
-  for (StampedPose& pose : map.cameras) pose.T_world_camera = T * pose.T_world_camera;
+  const std::optional<Eigen::Isometry3d> T = map_alignment(groundtruth, map.cameras);
+  if (!T) throw Error("{}: fewer than 3 poses of its run have ground truth", file);
+  map.cloud = moved(std::move(map.cloud), *T);
+  for (StampedPose& pose : map.cameras) pose.T_world_camera = *T * pose.T_world_camera;
   return map;
 }
 
