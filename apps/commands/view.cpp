@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -95,6 +96,14 @@ std::string caption(const ViewArguments& arguments, std::size_t map, std::string
   return fmt::format("{}, {}", text, side);
 }
 
+// JPEG where the name says so, else PNG.
+std::string encoded(const ColorImage& picture, const std::string& file) {
+  constexpr int kQuality = 90;
+  if (!file.ends_with(".jpg") && !file.ends_with(".jpeg")) return encode_png(picture);
+  const std::vector<std::uint8_t> bytes = encode_jpeg(picture, kQuality);
+  return std::string(bytes.begin(), bytes.end());
+}
+
 void view(const ViewArguments& arguments) {
   const std::vector<NamedSide> sides = chosen_sides(arguments.from);
   const PictureSize size = parse_picture_size(arguments.size);
@@ -110,7 +119,7 @@ void view(const ViewArguments& arguments) {
     }
   }
   const std::size_t columns = sides.size() > 1 ? sides.size() : pictures.size();
-  write_file_atomically(arguments.out, encode_png(tile_pictures(pictures, columns)));
+  write_file_atomically(arguments.out, encoded(tile_pictures(pictures, columns), arguments.out));
 }
 
 }  // namespace
@@ -124,7 +133,7 @@ void add_view_command(CLI::App& app, CommandResult&) {
                    "PLY files, all of one place and in one frame; the first says where one looks "
                    "from, by trajectory.txt beside it")
       ->required();
-  command->add_option("--out", arguments->out, "the picture, PNG")->required();
+  command->add_option("--out", arguments->out, "the picture, PNG, or JPEG as .jpg")->required();
   command->add_option("--from", arguments->from, "front, left, top or all")->capture_default_str();
   command->add_option("--size", arguments->size, "WIDTHxHEIGHT in pixels of each view")
       ->capture_default_str();
