@@ -98,7 +98,7 @@ std::string caption(const ViewArguments& arguments, std::size_t map, std::string
 
 // JPEG where the name says so, else PNG.
 std::string encoded(const ColorImage& picture, const std::string& file) {
-  constexpr int kQuality = 90;
+  constexpr int kQuality = 85;
   if (!file.ends_with(".jpg") && !file.ends_with(".jpeg")) return encode_png(picture);
   const std::vector<std::uint8_t> bytes = encode_jpeg(picture, kQuality);
   return std::string(bytes.begin(), bytes.end());
