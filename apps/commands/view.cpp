@@ -115,7 +115,7 @@ void view(const ViewArguments& arguments) {
     const PointCloud cut = cut_open(maps[i].cloud, scene);
     for (const NamedSide& side : sides) {
       const View from = view_from(side.side, scene, first, {size.width_px, size.height_px});
-      pictures.push_back({render_points(cut, from), caption(arguments, i, side.name)});
+      pictures.push_back({render_smooth(cut, from), caption(arguments, i, side.name)});
     }
   }
   const std::size_t columns = sides.size() > 1 ? sides.size() : pictures.size();
