@@ -33,6 +33,7 @@ constexpr const char* kExamples =
     "  stillmap run office --out result --set tracking.features=2000\n"
     "  stillmap evaluate trajectory office/groundtruth.txt result/trajectory.txt\n"
     "  stillmap export result --octomap map.bt     its map for other programs\n"
+    "  stillmap view result/map.ply --out map.png  the map from the front, the left and above\n"
     "  stillmap config                             every setting, its default and its meaning\n";
 
 std::string version_text() {

@@ -147,6 +147,9 @@ TEST_F(MapCommands, BadMapsAreRefused) {
 TEST_F(MapCommands, ViewsAreTiled) {
   ASSERT_EQ(run("view map.ply --out all.png --size 160x120").exit_code, 0);
   EXPECT_EQ(read_color(folder_ / "all.png").mat.size(), cv::Size(3 * 160 + 24, 120 + 26));
+  ASSERT_EQ(run("view map.ply --out all.jpg --size 160x120").exit_code, 0);
+  EXPECT_EQ(content("all.jpg").substr(0, 2), "\xFF\xD8");
+  EXPECT_EQ(read_color(folder_ / "all.jpg").mat.size(), cv::Size(3 * 160 + 24, 120 + 26));
   const Outcome two = run(
       "view map.ply static.ply --from front --out two.png --size 160x120 --name both --name wall");
   ASSERT_EQ(two.exit_code, 0) << two.err;

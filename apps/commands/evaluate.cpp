@@ -12,6 +12,7 @@
 #include "apps/commands.hpp"
 #include "stillmap/core/error.hpp"
 #include "stillmap/eval/ate.hpp"
+#include "stillmap/eval/map_alignment.hpp"
 #include "stillmap/eval/metrics_json.hpp"
 #include "stillmap/eval/rpe.hpp"
 #include "stillmap/io/associate.hpp"
@@ -39,7 +40,9 @@ TrajectoryFigures measure(const TrajectoryArguments& arguments) {
   const TrajectoryFile groundtruth = read_trajectory_file(arguments.groundtruth);
   const TrajectoryFile estimate = read_trajectory_file(arguments.estimate);
   TrajectoryFigures figures;
-  figures.ate = required_ate(groundtruth, estimate);
+  std::optional<AteResult> ate = absolute_trajectory_error(groundtruth.poses, estimate.poses);
+  if (!ate) throw too_few_pairs(groundtruth, estimate);
+  figures.ate = std::move(*ate);
   figures.rpe = relative_pose_error(groundtruth.poses, estimate.poses);
   figures.tracked = estimate.poses.size();
   if (!arguments.sequence.empty()) {
@@ -118,13 +121,19 @@ TrajectoryFile read_trajectory_file(const std::string& file) {
   return {file, read_trajectory(file)};
 }
 
-AteResult required_ate(const TrajectoryFile& groundtruth, const TrajectoryFile& estimate) {
-  std::optional<AteResult> ate = absolute_trajectory_error(groundtruth.poses, estimate.poses);
-  if (ate) return std::move(*ate);
-  throw Error("{}: fewer than 3 poses are within {} s of one in {}; are both of the same sequence?",
-              estimate.file,
-              kMaxStampDifferenceS,
-              groundtruth.file);
+Error too_few_pairs(const TrajectoryFile& groundtruth, const TrajectoryFile& estimate) {
+  return Error(
+      "{}: fewer than 3 poses are within {} s of one in {}; are both of the same sequence?",
+      estimate.file,
+      kMaxStampDifferenceS,
+      groundtruth.file);
+}
+
+Eigen::Isometry3d required_alignment(const TrajectoryFile& groundtruth,
+                                     const TrajectoryFile& estimate) {
+  const std::optional<Eigen::Isometry3d> T = map_alignment(groundtruth.poses, estimate.poses);
+  if (!T) throw too_few_pairs(groundtruth, estimate);
+  return *T;
 }
 
 void add_evaluate_command(CLI::App& app, CommandResult&) {

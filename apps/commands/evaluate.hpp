@@ -5,8 +5,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "stillmap/core/error.hpp"
 #include "stillmap/core/trajectory.hpp"
-#include "stillmap/eval/ate.hpp"
 
 namespace stillmap {
 
@@ -21,8 +21,13 @@ struct TrajectoryFile {
 
 [[nodiscard]] TrajectoryFile read_trajectory_file(const std::string& file);
 
-/// The error of an estimate. Throws Error, naming both files, where too few stamps agree.
-[[nodiscard]] AteResult required_ate(const TrajectoryFile& groundtruth,
-                                     const TrajectoryFile& estimate);
+/// T_groundtruth_estimate for a map (see map_alignment). Throws Error, naming both files, where too
+/// few stamps agree.
+[[nodiscard]] Eigen::Isometry3d required_alignment(const TrajectoryFile& groundtruth,
+                                                   const TrajectoryFile& estimate);
+
+/// What is said when too few stamps agree.
+[[nodiscard]] Error too_few_pairs(const TrajectoryFile& groundtruth,
+                                  const TrajectoryFile& estimate);
 
 }  // namespace stillmap

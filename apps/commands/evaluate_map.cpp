@@ -29,9 +29,9 @@ struct MapArguments {
 // The map in the frame of the truth.
 PointCloud aligned(const PointCloud& map, const MapArguments& arguments) {
   if (arguments.groundtruth.empty()) return map;
-  const AteResult ate = required_ate(read_trajectory_file(arguments.groundtruth),
-                                     read_trajectory_file(arguments.trajectory));
-  PointCloud result = moved(map, ate.T_groundtruth_estimate);
+  PointCloud result = moved(map,
+                            required_alignment(read_trajectory_file(arguments.groundtruth),
+                                               read_trajectory_file(arguments.trajectory)));
   check_extent(result, arguments.map + ", moved to the ground truth");
   return result;
 }

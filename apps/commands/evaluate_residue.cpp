@@ -70,8 +70,8 @@ PosedSequence as_true(const PointCloud& map,
                       const TumSequence& sequence,
                       const TrajectoryFile& groundtruth,
                       const TrajectoryFile& estimate) {
-  const AteResult ate = required_ate(groundtruth, estimate);
-  PosedSequence posed{.map = moved(map, ate.T_groundtruth_estimate), .T_world_camera = {}};
+  PosedSequence posed{.map = moved(map, required_alignment(groundtruth, estimate)),
+                      .T_world_camera = {}};
   for (std::uint32_t i = 0; i < sequence.size(); ++i) {
     const double stamp_s = sequence.entry(FrameId(i)).stamp.seconds;
     const std::optional<Eigen::Isometry3d> pose = pose_at(groundtruth.poses, stamp_s);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -14,7 +15,7 @@
 #include "apps/picture_size.hpp"
 #include "stillmap/core/error.hpp"
 #include "stillmap/core/nearest_name.hpp"
-#include "stillmap/eval/ate.hpp"
+#include "stillmap/eval/map_alignment.hpp"
 #include "stillmap/eval/map_files.hpp"
 #include "stillmap/io/atomic_file.hpp"
 #include "stillmap/io/image_io.hpp"
@@ -71,11 +72,10 @@ PosedMap in_truth(PosedMap map, const Trajectory& groundtruth, const std::string
     map.cameras = groundtruth;
     return map;
   }
-  const std::optional<AteResult> ate = absolute_trajectory_error(groundtruth, map.cameras);
-  if (!ate) throw Error("{}: fewer than 3 poses of its run have ground truth", file);
-  const Eigen::Isometry3d& T = ate->T_groundtruth_estimate;
-  map.cloud = moved(std::move(map.cloud), T);
-  for (StampedPose& pose : map.cameras) pose.T_world_camera = T * pose.T_world_camera;
+  const std::optional<Eigen::Isometry3d> T = map_alignment(groundtruth, map.cameras);
+  if (!T) throw Error("{}: fewer than 3 poses of its run have ground truth", file);
+  map.cloud = moved(std::move(map.cloud), *T);
+  for (StampedPose& pose : map.cameras) pose.T_world_camera = *T * pose.T_world_camera;
   return map;
 }
 
@@ -96,6 +96,14 @@ std::string caption(const ViewArguments& arguments, std::size_t map, std::string
   return fmt::format("{}, {}", text, side);
 }
 
+// JPEG where the name says so, else PNG.
+std::string encoded(const ColorImage& picture, const std::string& file) {
+  constexpr int kQuality = 85;
+  if (!file.ends_with(".jpg") && !file.ends_with(".jpeg")) return encode_png(picture);
+  const std::vector<std::uint8_t> bytes = encode_jpeg(picture, kQuality);
+  return std::string(bytes.begin(), bytes.end());
+}
+
 void view(const ViewArguments& arguments) {
   const std::vector<NamedSide> sides = chosen_sides(arguments.from);
   const PictureSize size = parse_picture_size(arguments.size);
@@ -107,11 +115,11 @@ void view(const ViewArguments& arguments) {
     const PointCloud cut = cut_open(maps[i].cloud, scene);
     for (const NamedSide& side : sides) {
       const View from = view_from(side.side, scene, first, {size.width_px, size.height_px});
-      pictures.push_back({render_points(cut, from), caption(arguments, i, side.name)});
+      pictures.push_back({render_smooth(cut, from), caption(arguments, i, side.name)});
     }
   }
   const std::size_t columns = sides.size() > 1 ? sides.size() : pictures.size();
-  write_file_atomically(arguments.out, encode_png(tile_pictures(pictures, columns)));
+  write_file_atomically(arguments.out, encoded(tile_pictures(pictures, columns), arguments.out));
 }
 
 }  // namespace
@@ -125,7 +133,7 @@ void add_view_command(CLI::App& app, CommandResult&) {
                    "PLY files, all of one place and in one frame; the first says where one looks "
                    "from, by trajectory.txt beside it")
       ->required();
-  command->add_option("--out", arguments->out, "the picture, PNG")->required();
+  command->add_option("--out", arguments->out, "the picture, PNG, or JPEG as .jpg")->required();
   command->add_option("--from", arguments->from, "front, left, top or all")->capture_default_str();
   command->add_option("--size", arguments->size, "WIDTHxHEIGHT in pixels of each view")
       ->capture_default_str();

@@ -4,24 +4,13 @@
 #include <utility>
 
 #include "stillmap/core/rigid_align.hpp"
-#include "stillmap/io/associate.hpp"
+#include "stillmap/eval/pose_pairs.hpp"
 
 namespace stillmap {
-namespace {
-
-std::vector<double> seconds_of(const Trajectory& trajectory) {
-  std::vector<double> seconds;
-  seconds.reserve(trajectory.size());
-  for (const StampedPose& pose : trajectory) seconds.push_back(pose.stamp.seconds);
-  return seconds;
-}
-
-}  // namespace
-
 std::optional<AteResult> absolute_trajectory_error(const Trajectory& groundtruth,
                                                    const Trajectory& estimate) {
   const std::vector<std::pair<std::size_t, std::size_t>> matches =
-      associate(seconds_of(groundtruth), seconds_of(estimate), kMaxStampDifferenceS);
+      pair_poses(groundtruth, estimate);
   if (matches.size() < 3) return std::nullopt;
 
   std::vector<Eigen::Vector3d> truth, estimated;

@@ -102,6 +102,21 @@ PointCloud cut_open(const PointCloud& map, const SceneFrame& scene) {
   return cut;
 }
 
+ColorImage render_smooth(const PointCloud& cloud, const View& view) {
+  View large = view;
+  large.width_px *= 2;
+  large.height_px *= 2;
+  large.scale *= 2;
+  ColorImage picture;
+  cv::resize(render_points(cloud, large).mat,
+             picture.mat,
+             {view.width_px, view.height_px},
+             0,
+             0,
+             cv::INTER_AREA);
+  return picture;
+}
+
 ColorImage tile_pictures(std::span<const CaptionedPicture> pictures, std::size_t columns) {
   STILLMAP_CHECK(!pictures.empty() && columns > 0);
   const cv::Size size = pictures.front().image.mat.size();

@@ -30,6 +30,9 @@ struct ViewSize {
                              const PointCloud& map,
                              const ViewSize& size);
 
+/// As render_points(), but rendered twice as large and made smaller, so that edges are smooth.
+[[nodiscard]] ColorImage render_smooth(const PointCloud& cloud, const View& view);
+
 /// A picture with its name.
 struct CaptionedPicture {
   ColorImage image;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include <gtest/gtest.h>
+#include <opencv2/core.hpp>
 
 namespace stillmap {
 namespace {
@@ -117,6 +118,25 @@ TEST(ViewFrom, fills_the_picture_from_all_sides) {
     EXPECT_LT(std::max(box.sizes().x() / 320, box.sizes().y() / 240), 1.1);
     EXPECT_LT((box.center() - Eigen::Vector2d(160, 120)).norm(), 20);
   }
+}
+
+TEST(RenderSmooth, is_the_same_picture_without_steps) {
+  const PointCloud map = room();
+  const View view = view_from(MapSide::kTop, scene_of(map), map, {320, 240});
+  const cv::Mat3b plain = render_points(map, view).mat, smooth = render_smooth(map, view).mat;
+  ASSERT_EQ(smooth.size(), plain.size());
+  EXPECT_LT(cv::norm(smooth, plain, cv::NORM_L1), 12.0 * 3 * 320 * 240);
+  // Half of a pixel that a point covers is half its color.
+  PointCloud point;
+  point.positions = {{0.0025F, 0.0025F, 1.0F}};
+  point.colors = {{0, 0, 0}};
+  View near;
+  near.width_px = near.height_px = 32;
+  near.scale = 100;
+  near.point_size_m = 0.005;  // half a pixel, of the four in the large picture
+  near.shade_depth_steps = false;
+  EXPECT_EQ(render_points(point, near).mat(16, 16), cv::Vec3b(0, 0, 0));
+  EXPECT_NEAR(render_smooth(point, near).mat(16, 16)[0], 255 * 3 / 4, 1);
 }
 
 TEST(TilePictures, lie_in_rows_with_captions_over_them) {

@@ -7,6 +7,7 @@
 #include "stillmap/report/display_text.hpp"
 #include "stillmap/report/map_picture.hpp"
 #include "stillmap/report/map_view_data.hpp"
+#include "stillmap/report/map_views.hpp"
 #include "stillmap/report/page_assets.hpp"
 #include "stillmap/report/page_sections.hpp"
 #include "stillmap/report/picture_html.hpp"
@@ -15,13 +16,25 @@
 namespace stillmap {
 namespace {
 
-ColorImage map_picture(const RunReport& report, const View& view) {
+std::string map_figures(const RunReport& report, const SceneFrame& scene) {
   constexpr Rgb kPathColor = {225, 107, 0};
-  ColorImage picture = render_points(*report.map, view);
-  for (const std::vector<Eigen::Vector3d>& part : continuous_parts(report.estimate)) {
-    picture = draw_path(picture, view, part, kPathColor);
+  struct Figure {
+    MapSide side;
+    const char* caption;
+  };
+  const PointCloud map = cut_open(*report.map, scene);
+  std::string out;
+  for (const Figure& figure : {Figure{MapSide::kFront, "From the front"},
+                               Figure{MapSide::kLeft, "From the left"},
+                               Figure{MapSide::kTop, "From above"}}) {
+    const View view = view_from(figure.side, scene, map, {640, 480});
+    ColorImage picture = render_smooth(map, view);
+    for (const std::vector<Eigen::Vector3d>& part : continuous_parts(report.estimate)) {
+      picture = draw_path(picture, view, part, kPathColor);
+    }
+    out += figure_html(picture, "The map, " + std::string(figure.caption), figure.caption);
   }
-  return picture;
+  return "<div class=\"samples\">" + out + "</div>";
 }
 
 const char* const kViewHtml = R"(<figure id="map-view" hidden>
@@ -49,7 +62,8 @@ MapHtml map_html(const RunReport& report) {
   const std::string summary = fmt::format(
       "<p class=\"note\">{} points, about {:.1f} \u00D7 {:.1f} \u00D7 {:.1f} m (width, height, "
       "depth). "
-      "{}The camera's path is drawn over the map.</p>",
+      "{}The camera's path is drawn over the map; the pictures "
+      "leave out what hangs over the camera.</p>",
       count_text(report.map->size()),
       size.x(),
       size.y(),
@@ -57,15 +71,9 @@ MapHtml map_html(const RunReport& report) {
       report.map->size() > kMapViewPoints
           ? fmt::format("Shown are {} of them. ", count_text(kMapViewPoints))
           : "");
-  const std::string pictures = figure_html(map_picture(report, view_along(scene, 960, 640)),
-                                           "The map along the scene",
-                                           "Along the scene") +
-                               figure_html(map_picture(report, view_from_above(scene, 960, 640)),
-                                           "The map from above",
-                                           "From above, without what is over the camera");
-  MapHtml html{.section = summary + kViewHtml + "<div class=\"columns\">" + pictures + "</div>" +
-                          map_quality_html(report),
-               .script = {}};
+  MapHtml html{
+      .section = summary + kViewHtml + map_figures(report, scene) + map_quality_html(report),
+      .script = {}};
   html.script = fmt::format(
       "<script type=\"application/json\" id=\"map-data\">{}</script>\n<script>\n{}</script>",
       map_view_json(*report.map, scene, report.estimate, report.keyframes),

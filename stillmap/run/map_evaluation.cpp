@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stillmap/run/map_evaluation.hpp"
 
-#include "stillmap/eval/ate.hpp"
+#include "stillmap/eval/map_alignment.hpp"
 #include "stillmap/eval/map_files.hpp"
 #include "stillmap/io/trajectory_io.hpp"
 
@@ -21,9 +21,9 @@ std::optional<SequenceTruth> read_sequence_truth(const TumSequence& sequence) {
 std::optional<MapQuality> run_map_quality(const PointCloud& map,
                                           const Trajectory& estimate,
                                           const SequenceTruth& truth) {
-  const std::optional<AteResult> ate = absolute_trajectory_error(truth.groundtruth, estimate);
-  if (!ate) return std::nullopt;
-  const PointCloud aligned = moved(map, ate->T_groundtruth_estimate);
+  const std::optional<Eigen::Isometry3d> alignment = map_alignment(truth.groundtruth, estimate);
+  if (!alignment) return std::nullopt;
+  const PointCloud aligned = moved(map, *alignment);
   check_extent(aligned, "the map, moved to the ground truth");
   return map_quality(aligned, truth.map);
 }

@@ -7,7 +7,7 @@
 #include <sys/resource.h>
 
 #include "stillmap/core/error.hpp"
-#include "stillmap/eval/ate.hpp"
+#include "stillmap/eval/map_alignment.hpp"
 #include "stillmap/eval/pose_at.hpp"
 #include "stillmap/run/frame_source.hpp"
 #include "stillmap/run/object_log.hpp"
@@ -76,9 +76,9 @@ void skip_frame(RunReport& report,
 }
 
 void add_map_at_true_poses(SequenceRun& run, const System& system, const Trajectory& truth) {
-  const std::optional<AteResult> ate = absolute_trajectory_error(truth, run.result.trajectory);
-  if (!ate) return;
-  const Eigen::Isometry3d T_world_truth = ate->T_groundtruth_estimate.inverse();
+  const std::optional<Eigen::Isometry3d> alignment = map_alignment(truth, run.result.trajectory);
+  if (!alignment) return;
+  const Eigen::Isometry3d T_world_truth = alignment->inverse();
   std::vector<std::optional<Eigen::Isometry3d>> poses;
   for (const StampedPose& keyframe : run.result.keyframes) {
     poses.push_back(pose_at(truth, keyframe.stamp.seconds));

@@ -112,6 +112,31 @@ TEST(System, GivesTheSameBitsWithAnyNumberOfThreads) {
   }
 }
 
+// Moved by whole voxels, so that points stay together; a point on the face between two may change.
+TEST(System, MakesItsCloudAgainUnderOtherPoses) {
+  System system(static_world(), synthetic_camera(320, 240), 1);
+  for (std::uint32_t k = 0; k < kFrames; ++k) (void)system.process(frame(k));
+  const RunResult result = system.finish();
+  std::vector<std::optional<Eigen::Isometry3d>> same, moved;
+  for (const StampedPose& keyframe : result.keyframes) {
+    same.emplace_back(keyframe.T_world_camera);
+    moved.emplace_back(Eigen::Translation3d(0.64, 0, 0) * keyframe.T_world_camera);
+  }
+  EXPECT_EQ(system.cloud_with_poses(same).positions, result.map.positions);
+  const PointCloud other = system.cloud_with_poses(moved);
+  const auto mean_x = [](const PointCloud& cloud) {
+    double sum = 0;
+    for (const Eigen::Vector3f& p : cloud.positions) sum += static_cast<double>(p.x());
+    return sum / static_cast<double>(cloud.size());
+  };
+  EXPECT_NEAR(mean_x(other), mean_x(result.map) + 0.64, 0.005);
+
+  for (std::size_t i = 1; i < same.size(); ++i) same[i].reset();
+  const PointCloud first_only = system.cloud_with_poses(same);
+  EXPECT_GT(first_only.size(), 1000U);
+  EXPECT_LT(first_only.size(), result.map.size());
+}
+
 TEST(System, MarksDarkFramesAsLostAndFindsBack) {
   const FinishedRun done = run(2, 35, 45);
   for (std::uint32_t k = 0; k < kFrames; ++k) {

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "stillmap/core/trajectory.hpp"
+
+namespace stillmap {
+
+/// Indices (into the ground truth, into the estimate) of poses less than kMaxStampDifferenceS
+/// apart, each used once: see associate().
+[[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> pair_poses(
+    const Trajectory& groundtruth, const Trajectory& estimate);
+
+}  // namespace stillmap
