@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include <benchmark/benchmark.h>
 
 #include "stillmap/cloud/global_cloud.hpp"
 #include "stillmap/cloud/local_cloud.hpp"
+#include "stillmap/cloud/static_depth.hpp"
 #include "stillmap/core/camera.hpp"
+#include "stillmap/core/rgbd_frame.hpp"
 #include "stillmap/core/se3.hpp"
 
 namespace stillmap {
@@ -28,13 +31,20 @@ RgbdFrame wall(const CameraModel& camera) {
   return frame;
 }
 
+/// All that is done for a key frame's cloud, in mode `full`.
 void make_local_cloud(benchmark::State& state) {
   const CameraModel camera = builtin_camera("tum_fr3");
   const RgbdFrame frame = wall(camera);
   const cv::Mat2f rays = pixel_rays(camera);
+  cv::Mat1b dynamic(frame.depth.mat.size(), std::uint8_t{0});
+  dynamic(cv::Rect(100, 100, 80, 300)).setTo(1);
+  StaticDepthConfig config;
+  config.edges = "growing";
+  config.islands = "on";
   std::size_t points = 0;
   for (auto _ : state) {
-    const PointCloud cloud = local_cloud(frame, rays, {});
+    const cv::Mat1f depth = static_depth(frame.depth.mat, dynamic, config);
+    const PointCloud cloud = local_cloud(depth, frame.color, rays, {});
     points = cloud.size();
     benchmark::DoNotOptimize(cloud.positions.data());
   }
@@ -42,10 +52,22 @@ void make_local_cloud(benchmark::State& state) {
 }
 BENCHMARK(make_local_cloud)->Unit(benchmark::kMillisecond);
 
+void clean_depth(benchmark::State& state) {
+  const RgbdFrame frame = wall(builtin_camera("tum_fr3"));
+  StaticDepthConfig config;
+  config.edges = "growing";
+  config.islands = "on";
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(static_depth(frame.depth.mat, {}, config).data);
+  }
+}
+BENCHMARK(clean_depth)->Unit(benchmark::kMillisecond);
+
 /// Key frames 10 cm and about 3 degrees apart, all of which see such a wall.
 void assemble_global_cloud(benchmark::State& state) {
   const CameraModel camera = builtin_camera("tum_fr3");
-  PointCloud local = local_cloud(wall(camera), pixel_rays(camera), {});
+  PointCloud local =
+      local_cloud(wall(camera).depth.mat, wall(camera).color, pixel_rays(camera), {});
   local.positions.resize(std::min<std::size_t>(local.size(), 60000));
   local.colors.resize(local.size());
   std::vector<PosedCloud> clouds;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "stillmap/cloud/local_cloud.hpp"
 #include "stillmap/core/error.hpp"
 #include "stillmap/mapping/map_adjustment.hpp"
 #include "stillmap/system/label_image.hpp"
@@ -24,6 +23,7 @@ constexpr std::int64_t kAll = std::numeric_limits<std::int64_t>::max();
 
 System::System(const SystemConfig& config, const CameraModel& camera, int threads)
     : config_(checked(config)),
+      cloud_config_(config.cloud.decided(config.dynamics.mode)),
       camera_(camera),
       rays_(pixel_rays(camera)),
       dynamics_(config.dynamics, camera),
@@ -33,13 +33,13 @@ System::System(const SystemConfig& config, const CameraModel& camera, int thread
       tracker_(config.tracking.tracker, config.relocalization, camera, measure_, config.seed),
       worker_(threads > 1 ? std::make_unique<Worker>() : nullptr),
       mapping_jobs_(worker_.get()),
-      cloud_jobs_(worker_.get()) {}
+      view_jobs_(worker_.get()) {}
 
 FrameResult System::process(const FramePtr& frame, FrameObjects objects) {
   Stopwatch total, stage;
   FrameResult result;
   for (const MapUpdate& update : mapping_jobs_.collect_due(frame_number_)) map_.apply(update);
-  collect_clouds(frame_number_);
+  collect_views(frame_number_);
   result.stages.push_back({"mapping", stage.lap_ms()});
 
   const std::optional<Eigen::Isometry3d> expected =
@@ -136,17 +136,16 @@ KeyframeId System::insert_keyframe(const FramePtr& frame, const FrameResult& res
       });
   const cv::Mat1b dynamic = result.dynamics.excluded;
   const cv::Mat1b labels = label_image(frame->depth, result.dynamics);
-  cloud_jobs_.submit(
-      frame_number_ + config_.mapping.lag_frames, [frame, dynamic, labels, id, this] {
-        return std::pair(id,
-                         std::make_shared<const PointCloud>(
-                             local_cloud(*frame, rays_, config_.cloud, dynamic, labels)));
-      });
+  view_jobs_.submit(frame_number_ + config_.mapping.lag_frames, [frame, dynamic, labels, id, this] {
+    return std::pair(id,
+                     std::make_shared<const KeyframeView>(
+                         keyframe_view(*frame, rays_, cloud_config_, dynamic, labels)));
+  });
   return id;
 }
 
-void System::collect_clouds(std::int64_t frame) {
-  for (auto& [id, cloud] : cloud_jobs_.collect_due(frame)) clouds_[id] = std::move(cloud);
+void System::collect_views(std::int64_t frame) {
+  for (auto& [id, view] : view_jobs_.collect_due(frame)) views_[id] = std::move(view);
 }
 
 void System::record(const RgbdFrame& frame,
@@ -159,7 +158,7 @@ void System::record(const RgbdFrame& frame,
 
 RunResult System::finish() {
   for (const MapUpdate& update : mapping_jobs_.collect_due(kAll)) map_.apply(update);
-  collect_clouds(kAll);
+  collect_views(kAll);
 
   RunResult result;
   result.lost_at_end = lost_;
@@ -184,9 +183,9 @@ Trajectory System::final_trajectory() const {
 PointCloud System::final_cloud() const {
   std::vector<PosedCloud> posed;
   for (const auto& [id, keyframe] : map_.keyframes()) {
-    posed.push_back({keyframe.T_world_camera, clouds_.at(id).get()});
+    posed.push_back({keyframe.T_world_camera, &views_.at(id)->cloud});
   }
-  return global_cloud(posed, config_.cloud.voxel_size_m);
+  return global_cloud(posed, cloud_config_.voxel_size_m);
 }
 
 }  // namespace stillmap

@@ -9,6 +9,7 @@
 #include "stillmap/core/rgbd_frame.hpp"
 #include "stillmap/core/trajectory.hpp"
 #include "stillmap/map/map.hpp"
+#include "stillmap/system/cloud_stage.hpp"
 #include "stillmap/system/config.hpp"
 #include "stillmap/system/dynamics_stage.hpp"
 #include "stillmap/system/frame_result.hpp"
@@ -57,7 +58,7 @@ class System {
   [[nodiscard]] TrackedFrame track(const RgbdFrame& frame, Features features);
   [[nodiscard]] KeyframeId insert_keyframe(const FramePtr& frame, const FrameResult& result);
   void count_landmarks(const TrackedFrame& tracked);
-  void collect_clouds(std::int64_t frame);
+  void collect_views(std::int64_t frame);
   void record(const RgbdFrame& frame,
               const TrackedFrame& tracked,
               const Eigen::Isometry3d& T_world_camera);
@@ -65,6 +66,7 @@ class System {
   [[nodiscard]] PointCloud final_cloud() const;
 
   SystemConfig config_;
+  CloudConfig cloud_config_;  // decided
   CameraModel camera_;
   cv::Mat2f rays_;
   DynamicsStage dynamics_;
@@ -77,11 +79,11 @@ class System {
   KeyframeAge since_keyframe_;
   bool lost_ = true;  // until the first frame
   std::vector<FrameRecord> records_;
-  std::map<KeyframeId, std::shared_ptr<const PointCloud>> clouds_;
+  std::map<KeyframeId, std::shared_ptr<const KeyframeView>> views_;
 
   std::unique_ptr<Worker> worker_;
   JobLedger<MapUpdate> mapping_jobs_;
-  JobLedger<std::pair<KeyframeId, std::shared_ptr<const PointCloud>>> cloud_jobs_;
+  JobLedger<std::pair<KeyframeId, std::shared_ptr<const KeyframeView>>> view_jobs_;
 };
 
 }  // namespace stillmap
