@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/cloud/free_space.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+#include "stillmap/core/error.hpp"
+
+namespace stillmap {
+namespace {
+
+constexpr std::size_t kBatch = 256;
+constexpr float kNearest = 0.05F;
+
+/// Raw pixels and depths of some points in a camera.
+struct Projected {
+  std::array<float, kBatch> u, v, z;
+};
+
+class Projector {
+ public:
+  Projector(const CameraModel& camera, const Eigen::Isometry3d& T_camera_world)
+      : T_(T_camera_world.matrix().topRows<3>().cast<float>()),
+        fx_(static_cast<float>(camera.fx)),
+        fy_(static_cast<float>(camera.fy)),
+        cx_(static_cast<float>(camera.cx + 0.5)),  // to truncate is then to round
+        cy_(static_cast<float>(camera.cy + 0.5)),
+        k1_(static_cast<float>(camera.k1)),
+        k2_(static_cast<float>(camera.k2)),
+        k3_(static_cast<float>(camera.k3)),
+        p1_(static_cast<float>(camera.p1)),
+        p2_(static_cast<float>(camera.p2)) {}
+
+  void project(std::span<const Eigen::Vector3f> points, Projected& out) const {
+    const float a = T_(0, 0), b = T_(0, 1), c = T_(0, 2), d = T_(0, 3);
+    const float e = T_(1, 0), f = T_(1, 1), g = T_(1, 2), h = T_(1, 3);
+    const float i = T_(2, 0), j = T_(2, 1), k = T_(2, 2), l = T_(2, 3);
+    for (std::size_t n = 0; n < points.size(); ++n) {  // without a branch, to run on vectors
+      const float px = points[n].x(), py = points[n].y(), pz = points[n].z();
+      const float z = i * px + j * py + k * pz + l;
+      const float inverse_z = 1.0F / std::max(z, kNearest);
+      const float x = (a * px + b * py + c * pz + d) * inverse_z;
+      const float y = (e * px + f * py + g * pz + h) * inverse_z;
+      const float r2 = x * x + y * y;
+      const float radial = 1 + r2 * (k1_ + r2 * (k2_ + r2 * k3_));
+      // Far outside of the image the polynomial means nothing, and may lead back into it.
+      const float far = r2 < kMaxR2 ? 0.0F : -1e6F;
+      out.u[n] = fx_ * (x * radial + 2 * p1_ * x * y + p2_ * (r2 + 2 * x * x)) + cx_ + far;
+      out.v[n] = fy_ * (y * radial + p1_ * (r2 + 2 * y * y) + 2 * p2_ * x * y) + cy_;
+      out.z[n] = z;
+    }
+  }
+
+ private:
+  static constexpr float kMaxR2 = 1.2F;
+  Eigen::Matrix<float, 3, 4> T_;
+  float fx_, fy_, cx_, cy_, k1_, k2_, k3_, p1_, p2_;
+};
+
+void count_up(std::uint8_t& count) {
+  count = static_cast<std::uint8_t>(count + (count < 255 ? 1 : 0));
+}
+
+void add_seen(Sightings& s) {
+  count_up(s.seen);
+  count_up(s.seen_last);
+  s.through_last = 0;
+}
+
+void add_through(Sightings& s) {
+  count_up(s.through);
+  count_up(s.through_last);
+  s.seen_last = 0;
+}
+
+/// Compares points with the range that one key frame has measured.
+class RangeCheck {
+ public:
+  RangeCheck(const RangeImage& range, const CameraModel& camera, const FreeSpaceConfig& config)
+      : range_(range.millimetres),
+        scale_(1.0F / static_cast<float>(range.block_px)),
+        width_(static_cast<float>(camera.width_px)),
+        height_(static_cast<float>(camera.height_px)),
+        margin_(static_cast<float>(config.margin_m)),
+        growth_(static_cast<float>(config.margin_per_m)) {}
+
+  void update(const Projected& at, std::span<Sightings> sightings) const {
+    for (std::size_t n = 0; n < sightings.size(); ++n) {
+      const float u = at.u[n], v = at.v[n], z = at.z[n];
+      if (!(z > kNearest && u >= 0 && v >= 0 && u < width_ && v < height_)) continue;
+      const std::uint16_t mm = range_(static_cast<int>(v * scale_), static_cast<int>(u * scale_));
+      if (mm == 0) continue;
+      const float behind = static_cast<float>(mm) * 0.001F - z;
+      const float margin = margin_ + growth_ * z * z;
+      if (behind > margin) add_through(sightings[n]);
+      if (behind <= margin && behind >= -margin) add_seen(sightings[n]);
+    }
+  }
+
+ private:
+  const cv::Mat1w& range_;
+  float scale_, width_, height_, margin_, growth_;
+};
+
+}  // namespace
+
+std::vector<Sightings> sightings(std::span<const Eigen::Vector3f> points,
+                                 std::span<const PosedRange> keyframes,
+                                 const CameraModel& camera,
+                                 const FreeSpaceConfig& config) {
+  std::vector<Sightings> all(points.size());
+  Projected projected{};
+  for (const PosedRange& keyframe : keyframes) {
+    STILLMAP_CHECK(keyframe.range != nullptr);
+    const RangeImage& range = *keyframe.range;
+    STILLMAP_CHECK(range.millimetres.cols * range.block_px >= camera.width_px);
+    STILLMAP_CHECK(range.millimetres.rows * range.block_px >= camera.height_px);
+    const Projector projector(camera, keyframe.T_world_keyframe.inverse());
+    const RangeCheck check(range, camera, config);
+    for (std::size_t begin = 0; begin < points.size(); begin += kBatch) {
+      const std::size_t size = std::min(kBatch, points.size() - begin);
+      projector.project(points.subspan(begin, size), projected);
+      check.update(projected, std::span(all).subspan(begin, size));
+    }
+  }
+  return all;
+}
+
+bool stays(const Sightings& s, const FreeSpaceConfig& config) {
+  if (s.through == 0) return true;
+  if (s.seen_last >= config.min_stay) return true;
+  const bool seldom = s.through <= config.max_through_share * s.seen;
+  return seldom && s.through_last < config.min_through;
+}
+
+}  // namespace stillmap
