@@ -78,7 +78,7 @@ void add_through(Sightings& s) {
 class RangeCheck {
  public:
   RangeCheck(const RangeImage& range, const CameraModel& camera, const FreeSpaceConfig& config)
-      : range_(range.millimetres),
+      : range_(range),
         scale_(1.0F / static_cast<float>(range.block_px)),
         width_(static_cast<float>(camera.width_px)),
         height_(static_cast<float>(camera.height_px)),
@@ -89,17 +89,22 @@ class RangeCheck {
     for (std::size_t n = 0; n < sightings.size(); ++n) {
       const float u = at.u[n], v = at.v[n], z = at.z[n];
       if (!(z > kNearest && u >= 0 && v >= 0 && u < width_ && v < height_)) continue;
-      const std::uint16_t mm = range_(static_cast<int>(v * scale_), static_cast<int>(u * scale_));
-      if (mm == 0) continue;
-      const float behind = static_cast<float>(mm) * 0.001F - z;
+      const RangeCell cell = range_.at(static_cast<int>(v * scale_), static_cast<int>(u * scale_));
+      if (!cell.known()) continue;
+      const float behind = cell.range_m() - z;
       const float margin = margin_ + growth_ * z * z;
+      const bool here = behind <= margin && behind >= -margin;
+      if (cell.moving()) {
+        if (here) count_up(sightings[n].moving);
+        continue;
+      }
       if (behind > margin) add_through(sightings[n]);
-      if (behind <= margin && behind >= -margin) add_seen(sightings[n]);
+      if (here) add_seen(sightings[n]);
     }
   }
 
  private:
-  const cv::Mat1w& range_;
+  const RangeImage& range_;
   float scale_, width_, height_, margin_, growth_;
 };
 
@@ -114,8 +119,8 @@ std::vector<Sightings> sightings(std::span<const Eigen::Vector3f> points,
   for (const PosedRange& keyframe : keyframes) {
     STILLMAP_CHECK(keyframe.range != nullptr);
     const RangeImage& range = *keyframe.range;
-    STILLMAP_CHECK(range.millimetres.cols * range.block_px >= camera.width_px);
-    STILLMAP_CHECK(range.millimetres.rows * range.block_px >= camera.height_px);
+    STILLMAP_CHECK(range.columns * range.block_px >= camera.width_px);
+    STILLMAP_CHECK(range.rows * range.block_px >= camera.height_px);
     const Projector projector(camera, keyframe.T_world_keyframe.inverse());
     const RangeCheck check(range, camera, config);
     for (std::size_t begin = 0; begin < points.size(); begin += kBatch) {
@@ -128,10 +133,27 @@ std::vector<Sightings> sightings(std::span<const Eigen::Vector3f> points,
 }
 
 bool stays(const Sightings& s, const FreeSpaceConfig& config) {
+  if (s.moving > config.max_moving_share * s.seen) return false;
   if (s.through == 0) return true;
   if (s.seen_last >= config.min_stay) return true;
   const bool seldom = s.through <= config.max_through_share * s.seen;
   return seldom && s.through_last < config.min_through;
+}
+
+PointCloud without_moved(const PointCloud& map,
+                         std::span<const PosedRange> keyframes,
+                         const CameraModel& camera,
+                         const FreeSpaceConfig& config) {
+  const std::vector<Sightings> seen = sightings(map.positions, keyframes, camera, config);
+  PointCloud kept;
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    if (!stays(seen[i], config)) continue;
+    kept.positions.push_back(map.positions[i]);
+    kept.colors.push_back(map.colors[i]);
+    if (!map.labels.empty()) kept.labels.push_back(map.labels[i]);
+    if (!map.normals.empty()) kept.normals.push_back(map.normals[i]);
+  }
+  return kept;
 }
 
 }  // namespace stillmap

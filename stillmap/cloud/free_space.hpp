@@ -10,6 +10,7 @@
 #include "stillmap/cloud/range_image.hpp"
 #include "stillmap/core/camera.hpp"
 #include "stillmap/core/fields.hpp"
+#include "stillmap/core/point_cloud.hpp"
 
 namespace stillmap {
 
@@ -19,18 +20,21 @@ struct FreeSpaceConfig {
   int min_through = 2;
   int min_stay = 3;
   double max_through_share = 0.25;
+  double max_moving_share = 2.0;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("margin_m",
-          self.margin_m,
-          FieldInfo{"a point is seen through when depth is measured this far behind it", "m", 0, 10});
+    visit(
+        "margin_m",
+        self.margin_m,
+        FieldInfo{"a point is seen through when depth is measured this far behind it", "m", 0, 10});
     visit("margin_per_m",
           self.margin_per_m,
           FieldInfo{"growth of that distance with depth squared", "1/m", 0, 1});
     visit("min_through",
           self.min_through,
-          FieldInfo{"key frames that must see through a point, the last that tell of it", "", 1, 1000});
+          FieldInfo{
+              "key frames that must see through a point, the last that tell of it", "", 1, 1000});
     visit("min_stay",
           self.min_stay,
           FieldInfo{"a point that was seen through stays when so many later key frames see it",
@@ -39,10 +43,14 @@ struct FreeSpaceConfig {
                     255});
     visit("max_through_share",
           self.max_through_share,
-          FieldInfo{"or when no more than this many see through it for each that sees it",
+          FieldInfo{
+              "or when no more than this many see through it for each that sees it", "", 0, 10});
+    visit("max_moving_share",
+          self.max_moving_share,
+          FieldInfo{"it goes when more than this many take it for what moves for each that sees it",
                     "",
                     0,
-                    10});
+                    1000});
   }
 };
 
@@ -54,10 +62,11 @@ struct PosedRange {
 
 /// What key frames, in the order of their time, tell of a point. Counts end at 255.
 struct Sightings {
-  std::uint8_t seen = 0;         ///< key frames that measure it
-  std::uint8_t through = 0;      ///< that see through it
-  std::uint8_t seen_last = 0;    ///< that measure it after the last that sees through it
-  std::uint8_t through_last = 0; ///< that see through it after the last that measures it
+  std::uint8_t seen = 0;          ///< key frames that measure it
+  std::uint8_t moving = 0;        ///< that measure something at its place which moves
+  std::uint8_t through = 0;       ///< that see through it
+  std::uint8_t seen_last = 0;     ///< that measure it after the last that sees through it
+  std::uint8_t through_last = 0;  ///< that see through it after the last that measures it
 };
 
 /// For each point (world), what the key frames tell of it. One that has the point out of view,
@@ -69,5 +78,11 @@ struct Sightings {
 
 /// Whether a point is part of the static world as it is at the end.
 [[nodiscard]] bool stays(const Sightings& s, const FreeSpaceConfig& config);
+
+/// The points of a map that stay, by what the frames tell of them.
+[[nodiscard]] PointCloud without_moved(const PointCloud& map,
+                                       std::span<const PosedRange> keyframes,
+                                       const CameraModel& camera,
+                                       const FreeSpaceConfig& config);
 
 }  // namespace stillmap

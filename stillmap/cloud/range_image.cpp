@@ -9,51 +9,60 @@
 namespace stillmap {
 namespace {
 
-constexpr std::uint16_t kUnknown = std::numeric_limits<std::uint16_t>::max();  // no minimum
-constexpr float kFarthest = 65.0F;  // metres, that fits into 16 bits of millimetres
+constexpr float kNothing = std::numeric_limits<float>::max();
 
-/// The least depth of a block's pixels, or kUnknown.
-std::uint16_t block_range(const cv::Mat1f& depth,
-                          const cv::Mat1b& dynamic,
-                          const cv::Rect& block,
-                          double max_missing) {
-  float nearest = kFarthest;
-  int known = 0;
+/// Nearest depth of the pixels of a block; kNothing where nothing is known.
+struct BlockDepth {
+  float still = kNothing;
+  float moving = kNothing;
+  bool any_moving = false;
+};
+
+BlockDepth block_depth(const cv::Mat1f& depth,
+                       const cv::Mat1b& moving,
+                       const cv::Rect& block,
+                       double max_missing) {
+  BlockDepth nearest;
+  int missing = 0;
   for (int row = block.y; row < block.y + block.height; ++row) {
     const float* z = depth[row];
+    const std::uint8_t* moves = moving.empty() ? nullptr : moving[row];
     for (int x = block.x; x < block.x + block.width; ++x) {
-      if (!dynamic.empty() && dynamic(row, x) != 0) return kUnknown;
-      if (!(z[x] > 0)) continue;
-      nearest = std::min(nearest, z[x]);
-      ++known;
+      const bool here = moves != nullptr && moves[x] != 0;
+      nearest.any_moving = nearest.any_moving || here;
+      if (z[x] > 0) {
+        float& least = here ? nearest.moving : nearest.still;
+        least = std::min(least, z[x]);
+      } else {
+        ++missing;
+      }
     }
   }
-  const bool enough = known > 0 && block.area() - known <= max_missing * block.area();
-  return enough ? static_cast<std::uint16_t>(nearest * 1000.0F) : kUnknown;
+  if (missing > max_missing * block.area()) nearest.still = kNothing;
+  return nearest;
 }
 
-/// The least of each `2 reach + 1` neighbours in a row; kUnknown stays it.
-void spread_rows(cv::Mat1w& range, int reach) {
-  cv::Mat1w line(1, range.cols);
+/// For each known value, the least of those up to `reach` away in its row.
+void spread_rows(cv::Mat1f& range, int reach) {
+  cv::Mat1f line(1, range.cols);
   for (int row = 0; row < range.rows; ++row) {
-    std::uint16_t* cell = range[row];
+    float* cell = range[row];
     std::copy(cell, cell + range.cols, line[0]);
     for (int x = 0; x < range.cols; ++x) {
-      if (cell[x] == kUnknown) continue;
       const int begin = std::max(0, x - reach), end = std::min(range.cols, x + reach + 1);
-      cell[x] = *std::min_element(line[0] + begin, line[0] + end);
+      if (cell[x] < kNothing) cell[x] = *std::min_element(line[0] + begin, line[0] + end);
     }
   }
 }
 
-void spread_columns(cv::Mat1w& range, int reach) {
-  const cv::Mat1w before = range.clone();
+void spread_columns(cv::Mat1f& range, int reach) {
+  const cv::Mat1f before = range.clone();
   for (int row = 0; row < range.rows; ++row) {
-    std::uint16_t* cell = range[row];
+    float* cell = range[row];
     for (int r = std::max(0, row - reach); r < std::min(range.rows, row + reach + 1); ++r) {
-      const std::uint16_t* other = before[r];
+      const float* other = before[r];
       for (int x = 0; x < range.cols; ++x) {
-        cell[x] = cell[x] == kUnknown ? kUnknown : std::min(cell[x], other[x]);
+        cell[x] = cell[x] < kNothing ? std::min(cell[x], other[x]) : kNothing;
       }
     }
   }
@@ -61,26 +70,43 @@ void spread_columns(cv::Mat1w& range, int reach) {
 
 }  // namespace
 
+RangeCell::RangeCell(float range_m, bool moving)
+    : bits_(static_cast<std::uint16_t>(
+          static_cast<std::uint16_t>(std::clamp(range_m, kUnit_m, 65.0F) / kUnit_m) |
+          (moving ? kMoving : 0))) {}
+
 RangeImage range_image(const cv::Mat1f& depth,
-                       const cv::Mat1b& dynamic,
+                       const cv::Mat1b& moving,
                        const RangeImageConfig& config) {
-  STILLMAP_CHECK(dynamic.empty() || dynamic.size() == depth.size());
+  STILLMAP_CHECK(moving.empty() || moving.size() == depth.size());
   STILLMAP_CHECK(config.block_px > 0 && config.rim_blocks >= 0);
   const int side = config.block_px;
-  RangeImage range{cv::Mat1w((depth.rows + side - 1) / side, (depth.cols + side - 1) / side), side};
-  for (int row = 0; row < range.millimetres.rows; ++row) {
-    for (int x = 0; x < range.millimetres.cols; ++x) {
+  RangeImage image{side, (depth.cols + side - 1) / side, (depth.rows + side - 1) / side, {}};
+  image.cells.resize(static_cast<std::size_t>(image.rows) *
+                     static_cast<std::size_t>(image.columns));
+  cv::Mat1f still(image.rows, image.columns, kNothing);
+  for (int row = 0; row < image.rows; ++row) {
+    for (int x = 0; x < image.columns; ++x) {
       const cv::Rect block(x * side,
                            row * side,
                            std::min(side, depth.cols - x * side),
                            std::min(side, depth.rows - row * side));
-      range.millimetres(row, x) = block_range(depth, dynamic, block, config.max_missing);
+      const BlockDepth nearest = block_depth(depth, moving, block, config.max_missing);
+      if (!nearest.any_moving) {
+        still(row, x) = nearest.still;
+      } else if (nearest.moving < kNothing) {
+        const auto i = static_cast<std::size_t>(row * image.columns + x);
+        image.cells[i] = RangeCell(nearest.moving, true);
+      }
     }
   }
-  spread_rows(range.millimetres, config.rim_blocks);
-  spread_columns(range.millimetres, config.rim_blocks);
-  for (std::uint16_t& mm : range.millimetres) mm = mm == kUnknown ? std::uint16_t{0} : mm;
-  return range;
+  spread_rows(still, config.rim_blocks);
+  spread_columns(still, config.rim_blocks);
+  for (std::size_t i = 0; i < image.cells.size(); ++i) {
+    const float range = *(still[0] + i);
+    if (range < kNothing) image.cells[i] = RangeCell(range, false);
+  }
+  return image;
 }
 
 }  // namespace stillmap

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include <opencv2/core/mat.hpp>
 
@@ -16,32 +18,60 @@ struct RangeImageConfig {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("block_px",
-          self.block_px,
-          FieldInfo{"how far is seen is kept for square blocks of pixels of this side", "px", 1, 64});
+    visit(
+        "block_px",
+        self.block_px,
+        FieldInfo{"how far is seen is kept for square blocks of pixels of this side", "px", 1, 64});
     visit("rim_blocks",
           self.rim_blocks,
           FieldInfo{"it is the least over so many blocks on each side", "", 0, 16});
-    visit("max_missing",
-          self.max_missing,
-          FieldInfo{"nothing is known of a block that lacks depth in more of its pixels", "", 0, 1});
+    visit(
+        "max_missing",
+        self.max_missing,
+        FieldInfo{"nothing is known of a block that lacks depth in more of its pixels", "", 0, 1});
   }
 };
 
-/// How far a frame has seen for certain, for each block of pixels. Two bytes a block.
+/// What a block of pixels measures. Two bytes.
+class RangeCell {
+ public:
+  RangeCell() = default;  ///< nothing
+  /// Up to 65 m; what is farther counts as 65 m.
+  RangeCell(float range_m, bool moving);
+
+  [[nodiscard]] bool known() const { return bits_ != 0; }
+  /// Whether it measures what moves.
+  [[nodiscard]] bool moving() const { return (bits_ & kMoving) != 0; }
+  /// To 2 mm.
+  [[nodiscard]] float range_m() const { return static_cast<float>(bits_ & ~kMoving) * kUnit_m; }
+
+ private:
+  static constexpr std::uint16_t kMoving = 0x8000;
+  static constexpr float kUnit_m = 0.002F;
+  std::uint16_t bits_ = 0;
+};
+
+/// How far a frame has seen for certain, for each block of pixels.
 struct RangeImage {
-  cv::Mat1w millimetres;  ///< 0 = not known
   int block_px = 1;
+  int columns = 0, rows = 0;
+  std::vector<RangeCell> cells;  ///< row by row
+
+  [[nodiscard]] RangeCell at(int row, int column) const {
+    return cells[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+                 static_cast<std::size_t>(column)];
+  }
 };
 
 /// The least measured depth (metres) in and around each block: what is nearer is free space there.
 ///
 /// That is on the safe side: the rim of something near is not seen through because a pixel beside
-/// it sees the wall behind. A block is not known where any of its pixels is not 0 in `dynamic` (of
-/// the depth image's size, or empty), or where more than `max_missing` of them have no depth; what
-/// is not known around it changes nothing.
+/// it sees the wall behind. Nothing is known of a block where more than `max_missing` of the pixels
+/// have no depth; such blocks change nothing in those around them. A block with pixels that are not
+/// 0 in `moving` (of the depth image's size, or empty) has the least depth of these alone, and no
+/// part in its neighbours'.
 [[nodiscard]] RangeImage range_image(const cv::Mat1f& depth,
-                                     const cv::Mat1b& dynamic,
+                                     const cv::Mat1b& moving,
                                      const RangeImageConfig& config);
 
 }  // namespace stillmap

@@ -1,23 +1,46 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stillmap/system/cloud_stage.hpp"
 
+#include <vector>
+
+#include "stillmap/cloud/global_cloud.hpp"
+#include "stillmap/core/error.hpp"
+
 namespace stillmap {
 
 CloudConfig CloudConfig::decided(std::string_view dynamics_mode) const {
   CloudConfig config = *this;
   const bool paper = dynamics_mode == "paper", full = dynamics_mode == "full";
   if (depth.edges == "by_mode") config.depth.edges = paper ? "fixed" : full ? "growing" : "off";
-  if (depth.islands == "by_mode") config.depth.islands = paper || full ? "on" : "off";
+  if (depth.islands == "by_mode") config.depth.islands = paper ? "on" : "off";
+  if (free_space == "by_mode") config.free_space = full ? "on" : "off";
   return config;
 }
 
-KeyframeView keyframe_view(const RgbdFrame& frame,
-                           const cv::Mat2f& rays,
-                           const CloudConfig& config,
-                           const cv::Mat1b& dynamic,
-                           const cv::Mat1b& labels) {
+StaticView static_view(const RgbdFrame& frame,
+                       const cv::Mat2f& rays,
+                       const CloudConfig& config,
+                       const cv::Mat1b& dynamic,
+                       const cv::Mat1b& labels) {
   const cv::Mat1f depth = static_depth(frame.depth.mat, dynamic, config.depth);
-  return {local_cloud(depth, frame.color, rays, config.local, labels)};
+  StaticView view{local_cloud(depth, frame.color, rays, config.local, labels), {}};
+  if (config.free_space == "on") view.range = range_image(frame.depth.mat, dynamic, config.range);
+  return view;
+}
+
+PointCloud static_map(std::span<const PosedView> views,
+                      const CameraModel& camera,
+                      const CloudConfig& config) {
+  std::vector<PosedCloud> clouds;
+  std::vector<PosedRange> ranges;
+  for (const PosedView& posed : views) {
+    STILLMAP_CHECK(posed.view != nullptr);
+    clouds.push_back({posed.T_world_camera, &posed.view->cloud});
+    ranges.push_back({posed.T_world_camera, &posed.view->range});
+  }
+  const PointCloud all = global_cloud(clouds, config.voxel_size_m);
+  if (config.free_space != "on") return all;
+  return without_moved(all, ranges, camera, config.free);
 }
 
 }  // namespace stillmap

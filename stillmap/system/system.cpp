@@ -67,10 +67,15 @@ FrameResult System::process(const FramePtr& frame, FrameObjects objects) {
   ++since_keyframe_.frames;
   if (tracked.status == TrackingStatus::kInitialized ||
       wants_keyframe(config_.keyframe, tracked, since_keyframe_)) {
-    tracked.reference = insert_keyframe(frame, result);
+    tracked.reference = insert_keyframe(*frame, result);
     result.is_keyframe = true;
   }
-  if (has_pose(tracked)) record(*frame, tracked, tracked.T_world_camera);
+  ++since_view_;
+  if (has_pose(tracked)) {
+    record(*frame, tracked, tracked.T_world_camera);
+    const int gap = config_.cloud.view_gap_frames;
+    if (result.is_keyframe || (gap > 0 && since_view_ >= gap)) add_view(frame, result.dynamics);
+  }
   if (dynamics_.enabled()) {
     has_pose(tracked) ? dynamics_.remember(*frame, tracked.T_world_camera, result.dynamics)
                       : dynamics_.forget();
@@ -110,11 +115,11 @@ void System::count_landmarks(const TrackedFrame& tracked) {
   }
 }
 
-KeyframeId System::insert_keyframe(const FramePtr& frame, const FrameResult& result) {
+KeyframeId System::insert_keyframe(const RgbdFrame& frame, const FrameResult& result) {
   const TrackedFrame& tracked = result.tracked;
   Keyframe keyframe;
-  keyframe.frame = frame->id;
-  keyframe.stamp = frame->stamp;
+  keyframe.frame = frame.id;
+  keyframe.stamp = frame.stamp;
   keyframe.T_world_camera = tracked.T_world_camera;
   keyframe.features = tracked.features;
   const KeyframeId id = map_.add_keyframe(std::move(keyframe));
@@ -134,18 +139,26 @@ KeyframeId System::insert_keyframe(const FramePtr& frame, const FrameResult& res
       frame_number_ + config_.mapping.lag_frames, [window, core = std::move(core), this] {
         return map_locally(std::move(*window), core, camera_, measure_, config_.mapping);
       });
-  const cv::Mat1b dynamic = result.dynamics.excluded;
-  const cv::Mat1b labels = label_image(frame->depth, result.dynamics);
-  view_jobs_.submit(frame_number_ + config_.mapping.lag_frames, [frame, dynamic, labels, id, this] {
-    return std::pair(id,
-                     std::make_shared<const KeyframeView>(
-                         keyframe_view(*frame, rays_, cloud_config_, dynamic, labels)));
-  });
   return id;
 }
 
+// The last frame that was recorded.
+void System::add_view(const FramePtr& frame, const FrameDynamics& dynamics) {
+  const std::size_t index = views_.size();
+  views_.push_back({records_.size() - 1, nullptr});
+  since_view_ = 0;
+  const cv::Mat1b dynamic = dynamics.excluded;
+  const cv::Mat1b labels = label_image(frame->depth, dynamics);
+  view_jobs_.submit(
+      frame_number_ + config_.mapping.lag_frames, [frame, dynamic, labels, index, this] {
+        return FinishedView(index,
+                            std::make_shared<const StaticView>(
+                                static_view(*frame, rays_, cloud_config_, dynamic, labels)));
+      });
+}
+
 void System::collect_views(std::int64_t frame) {
-  for (auto& [id, view] : view_jobs_.collect_due(frame)) views_[id] = std::move(view);
+  for (auto& [i, view] : view_jobs_.collect_due(frame)) views_[i].view = std::move(view);
 }
 
 void System::record(const RgbdFrame& frame,
@@ -174,18 +187,21 @@ Trajectory System::final_trajectory() const {
   Trajectory trajectory;
   trajectory.reserve(records_.size());
   for (const FrameRecord& record : records_) {
-    trajectory.push_back(
-        {record.stamp, map_.T_world_keyframe(record.reference) * record.T_reference_frame});
+    trajectory.push_back({record.stamp, T_world_frame(record)});
   }
   return trajectory;
 }
 
+Eigen::Isometry3d System::T_world_frame(const FrameRecord& record) const {
+  return map_.T_world_keyframe(record.reference) * record.T_reference_frame;
+}
+
 PointCloud System::final_cloud() const {
-  std::vector<PosedCloud> posed;
-  for (const auto& [id, keyframe] : map_.keyframes()) {
-    posed.push_back({keyframe.T_world_camera, &views_.at(id)->cloud});
+  std::vector<PosedView> posed;
+  for (const ViewRecord& view : views_) {
+    posed.push_back({T_world_frame(records_[view.frame]), view.view.get()});
   }
-  return global_cloud(posed, cloud_config_.voxel_size_m);
+  return static_map(posed, camera_, cloud_config_);
 }
 
 }  // namespace stillmap

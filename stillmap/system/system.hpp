@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <map>
 #include <memory>
 #include <optional>
 
-#include "stillmap/cloud/global_cloud.hpp"
 #include "stillmap/core/rgbd_frame.hpp"
 #include "stillmap/core/trajectory.hpp"
 #include "stillmap/map/map.hpp"
@@ -55,8 +53,16 @@ class System {
     Eigen::Isometry3d T_reference_frame;
   };
 
+  struct ViewRecord {
+    std::size_t frame;                       // its record's index
+    std::shared_ptr<const StaticView> view;  // null until it is ready
+  };
+  using FinishedView = std::pair<std::size_t, std::shared_ptr<const StaticView>>;
+
   [[nodiscard]] TrackedFrame track(const RgbdFrame& frame, Features features);
-  [[nodiscard]] KeyframeId insert_keyframe(const FramePtr& frame, const FrameResult& result);
+  [[nodiscard]] KeyframeId insert_keyframe(const RgbdFrame& frame, const FrameResult& result);
+  void add_view(const FramePtr& frame, const FrameDynamics& dynamics);
+  [[nodiscard]] Eigen::Isometry3d T_world_frame(const FrameRecord& record) const;
   void count_landmarks(const TrackedFrame& tracked);
   void collect_views(std::int64_t frame);
   void record(const RgbdFrame& frame,
@@ -79,11 +85,12 @@ class System {
   KeyframeAge since_keyframe_;
   bool lost_ = true;  // until the first frame
   std::vector<FrameRecord> records_;
-  std::map<KeyframeId, std::shared_ptr<const KeyframeView>> views_;
+  std::vector<ViewRecord> views_;  // of what goes into the map
+  int since_view_ = 0;             // frames
 
   std::unique_ptr<Worker> worker_;
   JobLedger<MapUpdate> mapping_jobs_;
-  JobLedger<std::pair<KeyframeId, std::shared_ptr<const KeyframeView>>> view_jobs_;
+  JobLedger<FinishedView> view_jobs_;
 };
 
 }  // namespace stillmap
