@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include "stillmap/core/error.hpp"
 
@@ -83,30 +85,93 @@ class RangeCheck {
         width_(static_cast<float>(camera.width_px)),
         height_(static_cast<float>(camera.height_px)),
         margin_(static_cast<float>(config.margin_m)),
-        growth_(static_cast<float>(config.margin_per_m)) {}
+        growth_(static_cast<float>(config.margin_per_m)),
+        beside_px_(static_cast<float>(config.beside_px)),
+        beside_m_(static_cast<float>(config.beside_m)) {
+    STILLMAP_CHECK(range.columns * range.block_px >= camera.width_px);
+    STILLMAP_CHECK(range.rows * range.block_px >= camera.height_px);
+  }
 
   void update(const Projected& at, std::span<Sightings> sightings) const {
     for (std::size_t n = 0; n < sightings.size(); ++n) {
-      const float u = at.u[n], v = at.v[n], z = at.z[n];
-      if (!(z > kNearest && u >= 0 && v >= 0 && u < width_ && v < height_)) continue;
-      const RangeCell cell = range_.at(static_cast<int>(v * scale_), static_cast<int>(u * scale_));
-      if (!cell.known()) continue;
-      const float behind = cell.range_m() - z;
-      const float margin = margin_ + growth_ * z * z;
-      const bool here = behind <= margin && behind >= -margin;
+      const float z = at.z[n];
+      const RangeCell cell = cell_at(at.u[n], at.v[n]);
+      if (!(cell.known() && z > kNearest)) continue;
+      const bool here = is_here(cell, z);
       if (cell.moving()) {
         if (here) count_up(sightings[n].moving);
-        continue;
+      } else if (here) {
+        add_seen(sightings[n]);
+      } else if (cell.range_m() > z) {
+        add_through(sightings[n]);
       }
-      if (behind > margin) add_through(sightings[n]);
-      if (here) add_seen(sightings[n]);
+    }
+  }
+
+  /// Counts in `beside`.
+  void look_beside(const Projected& at, std::span<Sightings> sightings) const {
+    for (std::size_t n = 0; n < sightings.size(); ++n) {
+      const float z = at.z[n];
+      const RangeCell cell = cell_at(at.u[n], at.v[n]);
+      if (!(cell.known() && z > kNearest) || !is_here(cell, z)) continue;
+      if (moves_beside(at.u[n], at.v[n], z)) count_up(sightings[n].beside);
     }
   }
 
  private:
+  /// Unknown out of the image.
+  [[nodiscard]] RangeCell cell_at(float u, float v) const {
+    if (!(u >= 0 && v >= 0 && u < width_ && v < height_)) return {};
+    return range_.at(static_cast<int>(v * scale_), static_cast<int>(u * scale_));
+  }
+
+  [[nodiscard]] bool is_here(RangeCell cell, float z) const {
+    return std::abs(cell.range_m() - z) <= margin_ + growth_ * z * z;
+  }
+
+  /// In eight directions, at three distances: what moves is larger than the gaps.
+  [[nodiscard]] bool moves_beside(float u, float v, float z) const {
+    for (const float share : {0.25F, 0.5F, 1.0F}) {
+      const float straight = share * beside_px_, slanting = straight * 0.7F;
+      for (const auto& [du, dv] : {std::pair(straight, 0.0F),
+                                   {-straight, 0.0F},
+                                   {0.0F, straight},
+                                   {0.0F, -straight},
+                                   {slanting, slanting},
+                                   {slanting, -slanting},
+                                   {-slanting, slanting},
+                                   {-slanting, -slanting}}) {
+        const RangeCell cell = cell_at(u + du, v + dv);
+        if (cell.moving() && std::abs(cell.range_m() - z) <= beside_m_) return true;
+      }
+    }
+    return false;
+  }
+
   const RangeImage& range_;
-  float scale_, width_, height_, margin_, growth_;
+  float scale_, width_, height_, margin_, growth_, beside_px_, beside_m_;
 };
+
+/// Calls `check(range check, where the points fall, their sightings)` for each key frame and batch.
+template <class Check>
+void for_each_batch(std::span<const Eigen::Vector3f> points,
+                    std::span<Sightings> all,
+                    std::span<const PosedRange> keyframes,
+                    const CameraModel& camera,
+                    const FreeSpaceConfig& config,
+                    Check&& check) {
+  Projected projected{};
+  for (const PosedRange& keyframe : keyframes) {
+    STILLMAP_CHECK(keyframe.range != nullptr);
+    const Projector projector(camera, keyframe.T_world_keyframe.inverse());
+    const RangeCheck range(*keyframe.range, camera, config);
+    for (std::size_t begin = 0; begin < points.size(); begin += kBatch) {
+      const std::size_t size = std::min(kBatch, points.size() - begin);
+      projector.project(points.subspan(begin, size), projected);
+      check(range, projected, all.subspan(begin, size));
+    }
+  }
+}
 
 }  // namespace
 
@@ -115,25 +180,39 @@ std::vector<Sightings> sightings(std::span<const Eigen::Vector3f> points,
                                  const CameraModel& camera,
                                  const FreeSpaceConfig& config) {
   std::vector<Sightings> all(points.size());
-  Projected projected{};
-  for (const PosedRange& keyframe : keyframes) {
-    STILLMAP_CHECK(keyframe.range != nullptr);
-    const RangeImage& range = *keyframe.range;
-    STILLMAP_CHECK(range.columns * range.block_px >= camera.width_px);
-    STILLMAP_CHECK(range.rows * range.block_px >= camera.height_px);
-    const Projector projector(camera, keyframe.T_world_keyframe.inverse());
-    const RangeCheck check(range, camera, config);
-    for (std::size_t begin = 0; begin < points.size(); begin += kBatch) {
-      const std::size_t size = std::min(kBatch, points.size() - begin);
-      projector.project(points.subspan(begin, size), projected);
-      check.update(projected, std::span(all).subspan(begin, size));
-    }
+  for_each_batch(points,
+                 all,
+                 keyframes,
+                 camera,
+                 config,
+                 [](const RangeCheck& range, const Projected& at, std::span<Sightings> some) {
+                   range.update(at, some);
+                 });
+  // The weakly seen are few: only for them it is worth to look around in the images.
+  std::vector<std::size_t> weak;
+  std::vector<Eigen::Vector3f> weak_points;
+  std::vector<Sightings> weak_sightings;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (all[i].seen > config.weakly_seen) continue;
+    weak.push_back(i);
+    weak_points.push_back(points[i]);
+    weak_sightings.push_back(all[i]);
   }
+  for_each_batch(weak_points,
+                 weak_sightings,
+                 keyframes,
+                 camera,
+                 config,
+                 [](const RangeCheck& range, const Projected& at, std::span<Sightings> some) {
+                   range.look_beside(at, some);
+                 });
+  for (std::size_t k = 0; k < weak.size(); ++k) all[weak[k]] = weak_sightings[k];
   return all;
 }
 
 bool stays(const Sightings& s, const FreeSpaceConfig& config) {
   if (s.moving > config.max_moving_share * s.seen) return false;
+  if (s.seen <= config.weakly_seen && s.beside > 0) return false;
   if (s.through == 0) return true;
   if (s.seen_last >= config.min_stay) return true;
   const bool seldom = s.through <= config.max_through_share * s.seen;

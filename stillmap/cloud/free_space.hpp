@@ -18,9 +18,12 @@ struct FreeSpaceConfig {
   double margin_m = 0.05;
   double margin_per_m = 0.0045;
   int min_through = 2;
-  int min_stay = 3;
+  int min_stay = 5;
   double max_through_share = 0.25;
   double max_moving_share = 2.0;
+  int weakly_seen = 2;
+  double beside_px = 40;
+  double beside_m = 0.2;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -51,6 +54,15 @@ struct FreeSpaceConfig {
                     "",
                     0,
                     1000});
+    visit("weakly_seen",
+          self.weakly_seen,
+          FieldInfo{"a point that no more than this many see goes when one of them sees what moves "
+                    "beside it",
+                    "",
+                    0,
+                    255});
+    visit("beside_px", self.beside_px, FieldInfo{"beside: so near in the image", "px", 0, 1000});
+    visit("beside_m", self.beside_m, FieldInfo{"and so near in depth", "m", 0, 10});
   }
 };
 
@@ -62,10 +74,11 @@ struct PosedRange {
 
 /// What key frames, in the order of their time, tell of a point. Counts end at 255.
 struct Sightings {
-  std::uint8_t seen = 0;          ///< key frames that measure it
-  std::uint8_t moving = 0;        ///< that measure something at its place which moves
-  std::uint8_t through = 0;       ///< that see through it
-  std::uint8_t seen_last = 0;     ///< that measure it after the last that sees through it
+  std::uint8_t seen = 0;       ///< key frames that measure it
+  std::uint8_t moving = 0;     ///< that measure something at its place which moves
+  std::uint8_t beside = 0;     ///< that measure it beside what moves; only for weakly seen points
+  std::uint8_t through = 0;    ///< that see through it
+  std::uint8_t seen_last = 0;  ///< that measure it after the last that sees through it
   std::uint8_t through_last = 0;  ///< that see through it after the last that measures it
 };
 
