@@ -21,7 +21,7 @@ struct FreeSpaceConfig {
   int min_stay = 5;
   double max_through_share = 0.25;
   double max_moving_share = 2.0;
-  int weakly_seen = 2;
+  int weakly_seen = 3;
   double beside_px = 40;
   double beside_m = 0.2;
 

@@ -15,30 +15,31 @@ constexpr float kNothing = std::numeric_limits<float>::max();
 struct BlockDepth {
   float still = kNothing;
   float moving = kNothing;
-  bool any_moving = false;
+  bool excluded = false;  // some of them
 };
 
 BlockDepth block_depth(const cv::Mat1f& depth,
-                       const cv::Mat1b& moving,
+                       const NotStatic& not_static,
                        const cv::Rect& block,
                        double max_missing) {
   BlockDepth nearest;
   int missing = 0;
   for (int row = block.y; row < block.y + block.height; ++row) {
     const float* z = depth[row];
-    const std::uint8_t* moves = moving.empty() ? nullptr : moving[row];
+    const std::uint8_t* excluded = not_static.excluded.empty() ? nullptr : not_static.excluded[row];
+    const std::uint8_t* moving = not_static.moving.empty() ? nullptr : not_static.moving[row];
     for (int x = block.x; x < block.x + block.width; ++x) {
-      const bool here = moves != nullptr && moves[x] != 0;
-      nearest.any_moving = nearest.any_moving || here;
+      const bool moves = moving != nullptr && moving[x] != 0;
+      nearest.excluded |= moves || (excluded != nullptr && excluded[x] != 0);
       if (z[x] > 0) {
-        float& least = here ? nearest.moving : nearest.still;
+        float& least = moves ? nearest.moving : nearest.still;
         least = std::min(least, z[x]);
       } else {
         ++missing;
       }
     }
   }
-  if (missing > max_missing * block.area()) nearest.still = kNothing;
+  if (nearest.excluded || missing > max_missing * block.area()) nearest.still = kNothing;
   return nearest;
 }
 
@@ -76,9 +77,11 @@ RangeCell::RangeCell(float range_m, bool moving)
           (moving ? kMoving : 0))) {}
 
 RangeImage range_image(const cv::Mat1f& depth,
-                       const cv::Mat1b& moving,
+                       const NotStatic& not_static,
                        const RangeImageConfig& config) {
-  STILLMAP_CHECK(moving.empty() || moving.size() == depth.size());
+  for (const cv::Mat1b& mask : {not_static.excluded, not_static.moving}) {
+    STILLMAP_CHECK(mask.empty() || mask.size() == depth.size());
+  }
   STILLMAP_CHECK(config.block_px > 0 && config.rim_blocks >= 0);
   const int side = config.block_px;
   RangeImage image{side, (depth.cols + side - 1) / side, (depth.rows + side - 1) / side, {}};
@@ -91,10 +94,9 @@ RangeImage range_image(const cv::Mat1f& depth,
                            row * side,
                            std::min(side, depth.cols - x * side),
                            std::min(side, depth.rows - row * side));
-      const BlockDepth nearest = block_depth(depth, moving, block, config.max_missing);
-      if (!nearest.any_moving) {
-        still(row, x) = nearest.still;
-      } else if (nearest.moving < kNothing) {
+      const BlockDepth nearest = block_depth(depth, not_static, block, config.max_missing);
+      still(row, x) = nearest.still;
+      if (nearest.moving < kNothing) {
         const auto i = static_cast<std::size_t>(row * image.columns + x);
         image.cells[i] = RangeCell(nearest.moving, true);
       }

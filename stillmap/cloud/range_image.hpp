@@ -63,15 +63,20 @@ struct RangeImage {
   }
 };
 
+/// What in a frame is not the static world. Images of its size, or empty.
+struct NotStatic {
+  cv::Mat1b excluded;  ///< not 0 where depth says nothing of what is static
+  cv::Mat1b moving;    ///< not 0 where it is that of something known to move
+};
+
 /// The least measured depth (metres) in and around each block: what is nearer is free space there.
 ///
 /// That is on the safe side: the rim of something near is not seen through because a pixel beside
 /// it sees the wall behind. Nothing is known of a block where more than `max_missing` of the pixels
-/// have no depth; such blocks change nothing in those around them. A block with pixels that are not
-/// 0 in `moving` (of the depth image's size, or empty) has the least depth of these alone, and no
-/// part in its neighbours'.
+/// have no depth, or of one with excluded pixels, except that something moves there: then it has
+/// the least depth of the pixels that move. Such blocks change nothing in those around them.
 [[nodiscard]] RangeImage range_image(const cv::Mat1f& depth,
-                                     const cv::Mat1b& moving,
+                                     const NotStatic& not_static,
                                      const RangeImageConfig& config);
 
 }  // namespace stillmap

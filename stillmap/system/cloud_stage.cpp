@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stillmap/system/cloud_stage.hpp"
 
+#include <algorithm>
 #include <vector>
+
+#include <opencv2/imgproc.hpp>
 
 #include "stillmap/cloud/global_cloud.hpp"
 #include "stillmap/core/error.hpp"
 
 namespace stillmap {
+namespace {
+
+constexpr int kJumpsPerWidth = 70;
+
+}  // namespace
 
 CloudConfig CloudConfig::decided(std::string_view dynamics_mode) const {
   CloudConfig config = *this;
@@ -20,11 +28,12 @@ CloudConfig CloudConfig::decided(std::string_view dynamics_mode) const {
 StaticView static_view(const RgbdFrame& frame,
                        const cv::Mat2f& rays,
                        const CloudConfig& config,
-                       const cv::Mat1b& dynamic,
+                       const NotStatic& not_static,
                        const cv::Mat1b& labels) {
-  const cv::Mat1f depth = static_depth(frame.depth.mat, dynamic, config.depth);
+  const cv::Mat1f depth = static_depth(frame.depth.mat, not_static.excluded, config.depth);
   StaticView view{local_cloud(depth, frame.color, rays, config.local, labels), {}};
-  if (config.free_space == "on") view.range = range_image(frame.depth.mat, dynamic, config.range);
+  if (config.free_space == "on")
+    view.range = range_image(frame.depth.mat, not_static, config.range);
   return view;
 }
 
@@ -41,6 +50,19 @@ PointCloud static_map(std::span<const PosedView> views,
   const PointCloud all = global_cloud(clouds, config.voxel_size_m);
   if (config.free_space != "on") return all;
   return without_moved(all, ranges, camera, config.free);
+}
+
+NotStatic not_static(const FrameDynamics& dynamics) {
+  const DynamicMask& mask = dynamics.judged.mask;
+  if (mask.extended.empty()) return {dynamics.excluded, {}};
+  const int side = std::max(1, mask.jumps.cols / kJumpsPerWidth);
+  cv::Mat1b moving;
+  cv::morphologyEx(mask.jumps,
+                   moving,
+                   cv::MORPH_OPEN,
+                   cv::getStructuringElement(cv::MORPH_RECT, cv::Size(side, side)));
+  cv::bitwise_or(moving, mask.extended, moving);
+  return {dynamics.excluded, moving};
 }
 
 }  // namespace stillmap

@@ -14,6 +14,7 @@
 #include "stillmap/core/camera.hpp"
 #include "stillmap/core/fields.hpp"
 #include "stillmap/core/rgbd_frame.hpp"
+#include "stillmap/system/dynamics_stage.hpp"
 
 namespace stillmap {
 
@@ -81,11 +82,17 @@ struct PosedView {
                                     const CameraModel& camera,
                                     const CloudConfig& config);
 
-/// The static surface in a frame. `dynamic` and `labels` may be empty; `config` is decided.
+/// The static surface in a frame. `not_static.excluded` leaves it; `labels` may be empty; `config`
+/// is decided.
 [[nodiscard]] StaticView static_view(const RgbdFrame& frame,
                                      const cv::Mat2f& rays,
                                      const CloudConfig& config,
-                                     const cv::Mat1b& dynamic,
+                                     const NotStatic& not_static,
                                      const cv::Mat1b& labels);
+
+/// What the dynamics stage says of a frame, for the cloud: excluded are all of its dynamic pixels
+/// and a margin; known to move are those of objects, and of depth jumps that cover a square with
+/// sides of 1/70 of the image's width, which noise does not.
+[[nodiscard]] NotStatic not_static(const FrameDynamics& dynamics);
 
 }  // namespace stillmap

@@ -147,13 +147,13 @@ void System::add_view(const FramePtr& frame, const FrameDynamics& dynamics) {
   const std::size_t index = views_.size();
   views_.push_back({records_.size() - 1, nullptr});
   since_view_ = 0;
-  const cv::Mat1b dynamic = dynamics.excluded;
+  const NotStatic masks = not_static(dynamics);
   const cv::Mat1b labels = label_image(frame->depth, dynamics);
   view_jobs_.submit(
-      frame_number_ + config_.mapping.lag_frames, [frame, dynamic, labels, index, this] {
+      frame_number_ + config_.mapping.lag_frames, [frame, masks, labels, index, this] {
         return FinishedView(index,
                             std::make_shared<const StaticView>(
-                                static_view(*frame, rays_, cloud_config_, dynamic, labels)));
+                                static_view(*frame, rays_, cloud_config_, masks, labels)));
       });
 }
 
