@@ -15,6 +15,19 @@ namespace {
 constexpr std::size_t kBatch = 256;
 constexpr float kNearest = 0.05F;
 
+/// Of the rays through the image's corners and the middles of its sides.
+double greatest_slope_squared(const CameraModel& camera) {
+  double greatest = 0;
+  for (const double x : {0.0, 0.5, 1.0}) {
+    for (const double y : {0.0, 0.5, 1.0}) {
+      const Eigen::Vector2d raw((camera.width_px - 1) * x, (camera.height_px - 1) * y);
+      greatest =
+          std::max(greatest, camera.unproject(camera.undistort(raw), 1.0).head<2>().squaredNorm());
+    }
+  }
+  return greatest;
+}
+
 /// Raw pixels and depths of some points in a camera.
 struct Projected {
   std::array<float, kBatch> u, v, z;
@@ -32,7 +45,8 @@ class Projector {
         k2_(static_cast<float>(camera.k2)),
         k3_(static_cast<float>(camera.k3)),
         p1_(static_cast<float>(camera.p1)),
-        p2_(static_cast<float>(camera.p2)) {}
+        p2_(static_cast<float>(camera.p2)),
+        max_r2_(static_cast<float>(1.1 * greatest_slope_squared(camera))) {}
 
   void project(std::span<const Eigen::Vector3f> points, Projected& out) const {
     const float a = T_(0, 0), b = T_(0, 1), c = T_(0, 2), d = T_(0, 3);
@@ -47,7 +61,7 @@ class Projector {
       const float r2 = x * x + y * y;
       const float radial = 1 + r2 * (k1_ + r2 * (k2_ + r2 * k3_));
       // Far outside of the image the polynomial means nothing, and may lead back into it.
-      const float far = r2 < kMaxR2 ? 0.0F : -1e6F;
+      const float far = r2 < max_r2_ ? 0.0F : -1e6F;
       out.u[n] = fx_ * (x * radial + 2 * p1_ * x * y + p2_ * (r2 + 2 * x * x)) + cx_ + far;
       out.v[n] = fy_ * (y * radial + p1_ * (r2 + 2 * y * y) + 2 * p2_ * x * y) + cy_;
       out.z[n] = z;
@@ -55,9 +69,9 @@ class Projector {
   }
 
  private:
-  static constexpr float kMaxR2 = 1.2F;
   Eigen::Matrix<float, 3, 4> T_;
   float fx_, fy_, cx_, cy_, k1_, k2_, k3_, p1_, p2_;
+  float max_r2_;
 };
 
 void count_up(std::uint8_t& count) {
