@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "stillmap/cloud/point_groups.hpp"
 #include "stillmap/core/error.hpp"
 
 namespace stillmap {
@@ -26,6 +27,27 @@ double greatest_slope_squared(const CameraModel& camera) {
     }
   }
   return greatest;
+}
+
+/// Points that are near each other, if they come so.
+struct Batch {
+  std::array<float, kBatch> x{}, y{}, z{};
+  Eigen::Vector3f center = Eigen::Vector3f::Zero();
+  float radius = 0;  // of a ball around the centre that has them all
+};
+
+Batch make_batch(std::span<const Eigen::Vector3f> points) {
+  Batch batch;
+  Eigen::AlignedBox3f box;
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    batch.x[n] = points[n].x();
+    batch.y[n] = points[n].y();
+    batch.z[n] = points[n].z();
+    box.extend(points[n]);
+  }
+  batch.center = box.center();
+  batch.radius = 0.5F * box.diagonal().norm() * 1.001F;
+  return batch;
 }
 
 /// Raw pixels and depths of some points in a camera.
@@ -48,12 +70,20 @@ class Projector {
         p2_(static_cast<float>(camera.p2)),
         max_r2_(static_cast<float>(1.1 * greatest_slope_squared(camera))) {}
 
-  void project(std::span<const Eigen::Vector3f> points, Projected& out) const {
+  /// Whether none of the points can be in the image.
+  [[nodiscard]] bool misses(const Batch& batch) const {
+    const Eigen::Vector3f p = T_.leftCols<3>() * batch.center + T_.col(3);
+    // Its distance from the cone around the optical axis that has all of the image in it.
+    const float outside = p.head<2>().norm() - std::sqrt(max_r2_) * p.z();
+    return outside > batch.radius * std::sqrt(1.0F + max_r2_) || p.z() < kNearest - batch.radius;
+  }
+
+  void project(const Batch& batch, Projected& out) const {
     const float a = T_(0, 0), b = T_(0, 1), c = T_(0, 2), d = T_(0, 3);
     const float e = T_(1, 0), f = T_(1, 1), g = T_(1, 2), h = T_(1, 3);
     const float i = T_(2, 0), j = T_(2, 1), k = T_(2, 2), l = T_(2, 3);
-    for (std::size_t n = 0; n < points.size(); ++n) {  // without a branch, to run on vectors
-      const float px = points[n].x(), py = points[n].y(), pz = points[n].z();
+    for (std::size_t n = 0; n < kBatch; ++n) {  // without a branch, so that it runs on vectors
+      const float px = batch.x[n], py = batch.y[n], pz = batch.z[n];
       const float z = i * px + j * py + k * pz + l;
       const float inverse_z = 1.0F / std::max(z, kNearest);
       const float x = (a * px + b * py + c * pz + d) * inverse_z;
@@ -174,15 +204,24 @@ void for_each_batch(std::span<const Eigen::Vector3f> points,
                     const CameraModel& camera,
                     const FreeSpaceConfig& config,
                     Check&& check) {
-  Projected projected{};
+  struct View {
+    Projector projector;
+    RangeCheck range;
+  };
+  std::vector<View> views;
   for (const PosedRange& keyframe : keyframes) {
     STILLMAP_CHECK(keyframe.range != nullptr);
-    const Projector projector(camera, keyframe.T_world_keyframe.inverse());
-    const RangeCheck range(*keyframe.range, camera, config);
-    for (std::size_t begin = 0; begin < points.size(); begin += kBatch) {
-      const std::size_t size = std::min(kBatch, points.size() - begin);
-      projector.project(points.subspan(begin, size), projected);
-      check(range, projected, all.subspan(begin, size));
+    views.push_back({Projector(camera, keyframe.T_world_keyframe.inverse()),
+                     RangeCheck(*keyframe.range, camera, config)});
+  }
+  Projected projected{};
+  for (std::size_t begin = 0; begin < points.size(); begin += kBatch) {
+    const std::size_t size = std::min(kBatch, points.size() - begin);
+    const Batch batch = make_batch(points.subspan(begin, size));
+    for (const View& view : views) {
+      if (view.projector.misses(batch)) continue;
+      view.projector.project(batch, projected);
+      check(view.range, projected, all.subspan(begin, size));
     }
   }
 }
@@ -237,10 +276,11 @@ PointCloud without_moved(const PointCloud& map,
                          std::span<const PosedRange> keyframes,
                          const CameraModel& camera,
                          const FreeSpaceConfig& config) {
-  const std::vector<Sightings> seen = sightings(map.positions, keyframes, camera, config);
+  const PointGroups groups = group_points(map.positions, config.cell_m);
+  const std::vector<Sightings> seen = sightings(groups.means, keyframes, camera, config);
   PointCloud kept;
   for (std::size_t i = 0; i < map.size(); ++i) {
-    if (!stays(seen[i], config)) continue;
+    if (!stays(seen[groups.group_of[i]], config)) continue;
     kept.positions.push_back(map.positions[i]);
     kept.colors.push_back(map.colors[i]);
     if (!map.labels.empty()) kept.labels.push_back(map.labels[i]);

@@ -15,6 +15,7 @@
 namespace stillmap {
 
 struct FreeSpaceConfig {
+  double cell_m = 0.02;
   double margin_m = 0.05;
   double margin_per_m = 0.0045;
   int min_through = 2;
@@ -27,6 +28,9 @@ struct FreeSpaceConfig {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
+    visit("cell_m",
+          self.cell_m,
+          FieldInfo{"points of a cube with this edge are judged together", "m", 0.001, 1});
     visit(
         "margin_m",
         self.margin_m,
@@ -92,7 +96,8 @@ struct Sightings {
 /// Whether a point is part of the static world as it is at the end.
 [[nodiscard]] bool stays(const Sightings& s, const FreeSpaceConfig& config);
 
-/// The points of a map that stay, by what the frames tell of them.
+/// The points of a map that stay, by what the frames tell of them. Points of a cube of `cell_m`
+/// have one fate: that of their mean.
 [[nodiscard]] PointCloud without_moved(const PointCloud& map,
                                        std::span<const PosedRange> keyframes,
                                        const CameraModel& camera,
