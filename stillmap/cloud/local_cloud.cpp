@@ -2,105 +2,32 @@
 #include "stillmap/cloud/local_cloud.hpp"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
-#include "stillmap/cloud/key_order.hpp"
 #include "stillmap/cloud/label_vote.hpp"
 #include "stillmap/core/error.hpp"
-
-// Not by VoxelGrid: as all points are known at once, sorting them by voxel takes half the time.
 
 namespace stillmap {
 namespace {
 
-Eigen::Vector3f point_of(const cv::Vec2f& ray, float z) {
-  return {ray[0] * z, ray[1] * z, z};
-}
-
-/// Numbers the voxels around the camera, in as few bits as reach far enough: fewer bits, less time.
-class VoxelKeys {
- public:
-  VoxelKeys(const cv::Mat2f& rays, const LocalCloudConfig& config)
-      : voxels_per_m_(1.0 / config.voxel_size_m) {
-    float steepest = 1.0F;  // the optical axis' own slope
-    for (int row = 0; row < rays.rows; ++row) {
-      for (int x = 0; x < rays.cols; ++x) {
-        steepest = std::max({steepest, std::abs(rays[row][x][0]), std::abs(rays[row][x][1])});
-      }
-    }
-    const double reach = static_cast<double>(steepest) * config.max_depth_m * voxels_per_m_;
-    const auto voxels = static_cast<std::uint64_t>(std::min(1e6, reach + 2.0));
-    bits_ = static_cast<unsigned>(std::bit_width(voxels)) + 1;
-    offset_ = std::int64_t{1} << (bits_ - 1);
-  }
-
-  /// Ordered by x, then y, then z; kOutside for a point that is not finite or out of reach.
-  [[nodiscard]] std::uint64_t operator()(const Eigen::Vector3f& p) const {
-    const Eigen::Vector3d scaled = p.cast<double>() * voxels_per_m_;
-    const auto limit = static_cast<double>(offset_ - 1);
-    if (!(scaled.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() < limit)) return kOutside;
-    return (axis(scaled.x()) << bits_ | axis(scaled.y())) << bits_ | axis(scaled.z());
-  }
-
-  static constexpr std::uint64_t kOutside = std::numeric_limits<std::uint64_t>::max();
-
- private:
-  /// Shifted to be positive, where to truncate is to round down.
-  [[nodiscard]] std::uint64_t axis(double scaled) const {
-    return static_cast<std::uint64_t>(
-        static_cast<std::int64_t>(scaled + static_cast<double>(offset_)));
-  }
-
-  double voxels_per_m_;
-  unsigned bits_ = 0;
-  std::int64_t offset_ = 0;
-};
-
-/// The pixels that have a usable point, by voxel.
-std::vector<IndexedKey> pixels_by_voxel(const cv::Mat1f& depth,
-                                        const cv::Mat2f& rays,
-                                        const LocalCloudConfig& config,
-                                        const cv::Mat1b& dynamic) {
-  const VoxelKeys key_of(rays, config);
-  const auto max_depth = static_cast<float>(config.max_depth_m);
-  std::vector<IndexedKey> pixels;
-  pixels.reserve(depth.total());
-  for (int row = 0; row < depth.rows; ++row) {
-    const float* z = depth[row];
-    const cv::Vec2f* ray = rays[row];
-    const std::uint8_t* moves = dynamic.empty() ? nullptr : dynamic[row];
-    for (int x = 0; x < depth.cols; ++x) {
-      if (moves != nullptr && moves[x] != 0) continue;
-      if (!(z[x] > 0 && z[x] <= max_depth)) continue;  // so written, NaN is left out too
-      const std::uint64_t key = key_of(point_of(ray[x], z[x]));
-      if (key == VoxelKeys::kOutside) continue;
-      pixels.push_back({key, static_cast<std::uint32_t>(row * depth.cols + x)});
-    }
-  }
-  return sorted_by_key(std::move(pixels));
-}
-
+constexpr float kSteepest = 1e3F;
 constexpr std::uint32_t kMostVotes = 65535;  // what a LabelVote can count
 
-/// Sums over the pixels of one voxel.
+/// Sums over the pixels of a cell that are a point.
 struct PointSum {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  std::array<std::uint32_t, 3> color{};
   std::uint32_t count = 0;
+  Eigen::Vector3f position = Eigen::Vector3f::Zero();
+  std::uint32_t red = 0, green = 0, blue = 0;
   LabelVote labels;
 
-  void vote(std::uint8_t label) {
-    if (count <= kMostVotes) labels.add(label, 1);
-  }
-
-  void add(const Eigen::Vector3f& p, const cv::Vec3b& rgb) {
-    position += p.cast<double>();
-    for (int c = 0; c < 3; ++c) color[static_cast<std::size_t>(c)] += rgb[c];
+  void add(const cv::Vec2f& ray, float z, const cv::Vec3b& rgb) {
+    position += Eigen::Vector3f(ray[0] * z, ray[1] * z, z);
+    red += rgb[0];
+    green += rgb[1];
+    blue += rgb[2];
     ++count;
   }
 
@@ -108,48 +35,90 @@ struct PointSum {
     const auto mean = [this](std::uint32_t sum) {
       return static_cast<std::uint8_t>((sum + count / 2) / count);
     };
-    cloud.positions.emplace_back((position / count).cast<float>());
-    cloud.colors.push_back({mean(color[0]), mean(color[1]), mean(color[2])});
+    cloud.positions.emplace_back(position / static_cast<float>(count));
+    cloud.colors.push_back({mean(red), mean(green), mean(blue)});
   }
 };
 
-std::size_t count_voxels(const std::vector<IndexedKey>& pixels) {
-  std::size_t count = pixels.empty() ? 0 : 1;
-  for (std::size_t i = 1; i < pixels.size(); ++i) count += pixels[i].key != pixels[i - 1].key;
-  return count;
-}
+struct Images {
+  const cv::Mat1f& depth;
+  const cv::Mat3b& color;
+  const cv::Mat2f& rays;
+  const cv::Mat1b& labels;
+};
+
+/// Makes the points of one cell after another.
+class CellPoints {
+ public:
+  CellPoints(const Images& images, const LocalCloudConfig& config)
+      : images_(images),
+        growth_(static_cast<float>(config.join_per_m)),
+        offset_(static_cast<float>(config.join_offset_m)) {}
+
+  void append_cell(const cv::Rect& cell, PointCloud& cloud) {
+    points_.clear();
+    for (int row = cell.y; row < cell.y + cell.height; ++row) add_row(row, cell);
+    for (const PointSum& point : points_) {
+      point.append_mean_to(cloud);
+      if (!images_.labels.empty()) cloud.labels.push_back(point.labels.winner());
+    }
+  }
+
+ private:
+  void add_row(int row, const cv::Rect& cell) {
+    const float* z = images_.depth[row];
+    const cv::Vec2f* ray = images_.rays[row];
+    const cv::Vec3b* rgb = images_.color[row];
+    for (int x = cell.x; x < cell.x + cell.width; ++x) {
+      // A ray too steep for a lens is one that its distortion does not tell.
+      const bool known = std::abs(ray[x][0]) < kSteepest && std::abs(ray[x][1]) < kSteepest;
+      if (!(z[x] > 0 && known)) continue;
+      PointSum& point = point_at(z[x]);
+      point.add(ray[x], z[x], rgb[x]);
+      if (!images_.labels.empty() && point.count <= kMostVotes) {
+        point.labels.add(images_.labels(row, x), 1);
+      }
+    }
+  }
+
+  /// The point that a pixel of this depth joins. Most cells have one or two.
+  PointSum& point_at(float z) {
+    const float reach = growth_ * (z + offset_) * (z + offset_);
+    for (std::size_t i = points_.size(); i-- > 0;) {
+      const auto count = static_cast<float>(points_[i].count);
+      if (std::abs(z * count - points_[i].position.z()) <= reach * count) return points_[i];
+    }
+    return points_.emplace_back();
+  }
+
+  const Images& images_;
+  float growth_, offset_;
+  std::vector<PointSum> points_;
+};
 
 }  // namespace
 
-PointCloud local_cloud(const RgbdFrame& frame,
+PointCloud local_cloud(const cv::Mat1f& depth,
+                       const ColorImage& color,
                        const cv::Mat2f& rays,
                        const LocalCloudConfig& config,
-                       const cv::Mat1b& dynamic,
                        const cv::Mat1b& labels) {
-  const cv::Mat1f& depth = frame.depth.mat;
-  const cv::Mat3b& color = frame.color.mat;
-  STILLMAP_CHECK(depth.size() == rays.size() && color.size() == rays.size());
-  STILLMAP_CHECK(dynamic.empty() || dynamic.size() == rays.size());
+  STILLMAP_CHECK(depth.size() == rays.size() && color.mat.size() == rays.size());
   STILLMAP_CHECK(labels.empty() || labels.size() == rays.size());
-  STILLMAP_CHECK(config.voxel_size_m > 0);
-  const std::vector<IndexedKey> pixels = pixels_by_voxel(depth, rays, config, dynamic);
-  const std::size_t voxels = count_voxels(pixels);
+  STILLMAP_CHECK(config.cells_across > 0);
+  const int side = std::max(1, (depth.cols + config.cells_across / 2) / config.cells_across);
+  const Images images{depth, color.mat, rays, labels};
+  CellPoints points(images, config);
   PointCloud cloud;
-  cloud.positions.reserve(voxels);
-  cloud.colors.reserve(voxels);
-  if (!labels.empty()) cloud.labels.reserve(voxels);
-  for (std::size_t i = 0; i < pixels.size();) {
-    const std::uint64_t key = pixels[i].key;
-    PointSum sum;
-    for (; i < pixels.size() && pixels[i].key == key; ++i) {
-      const int row = static_cast<int>(pixels[i].index) / depth.cols;
-      const int x = static_cast<int>(pixels[i].index) % depth.cols;
-      sum.add(point_of(rays(row, x), depth(row, x)), color(row, x));
-      if (!labels.empty()) sum.vote(labels(row, x));
+  for (int row = 0; row < depth.rows; row += side) {
+    for (int x = 0; x < depth.cols; x += side) {
+      points.append_cell({x, row, std::min(side, depth.cols - x), std::min(side, depth.rows - row)},
+                         cloud);
     }
-    sum.append_mean_to(cloud);
-    if (!labels.empty()) cloud.labels.push_back(sum.labels.winner());
   }
+  cloud.positions.shrink_to_fit();
+  cloud.colors.shrink_to_fit();
+  cloud.labels.shrink_to_fit();
   return cloud;
 }
 

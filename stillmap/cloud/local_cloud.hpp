@@ -4,24 +4,29 @@
 #include <opencv2/core/mat.hpp>
 
 #include "stillmap/core/fields.hpp"
+#include "stillmap/core/images.hpp"
 #include "stillmap/core/point_cloud.hpp"
-#include "stillmap/core/rgbd_frame.hpp"
 
 namespace stillmap {
 
 struct LocalCloudConfig {
-  double max_depth_m = 6.0;
-  double voxel_size_m = 0.01;
+  int cells_across = 160;
+  double join_per_m = 0.003;
+  double join_offset_m = 0.8;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("max_depth_m",
-          self.max_depth_m,
-          FieldInfo{"depth beyond this does not go into the map", "m", 0.1, 1000});
-    visit("voxel_size_m",
-          self.voxel_size_m,
-          FieldInfo{
-              "edge of the voxels that the map is thinned to, one point each", "m", 0.001, 1.0});
+    visit(
+        "cells_across",
+        self.cells_across,
+        FieldInfo{"a key frame's points are means over square cells, so many in the image's width",
+                  "",
+                  1,
+                  10000});
+    visit("join_per_m",
+          self.join_per_m,
+          FieldInfo{"and over depths within join_per_m (z + join_offset_m)^2", "1/m", 0, 1});
+    visit("join_offset_m", self.join_offset_m, FieldInfo{"see join_per_m", "m", 0, 100});
   }
 };
 
@@ -31,16 +36,20 @@ struct LocalCloudConfig {
 /// adjustment or a closed loop, then costs nothing, as the pose is applied when the map is
 /// assembled (global_cloud; Fan 2020, Eq. (1)).
 ///
-/// Pixels without depth (0, negative, not finite), with depth over `max_depth_m` or where
-/// `dynamic`, which may be empty, is not 0 are left out. The rest is thinned to one mean point a
-/// voxel, which bounds what a key frame keeps in memory by the surface it sees. `rays` are the
-/// camera's pixel_rays(), of the frame's size. A point's label is that of most of its pixels in
-/// `labels`; without such an image the cloud has no labels. Takes time linear in the number of
-/// pixels.
-[[nodiscard]] PointCloud local_cloud(const RgbdFrame& frame,
+/// `depth` is what static_depth() has left: 0 where there is no point. The image is divided into
+/// square cells. A pixel of depth z joins the last point of its cell that is, so far, within
+/// join_per_m (z + join_offset_m)^2 of z, else it begins another; a point is the mean of its
+/// pixels. That is a little more than the camera's noise: far pixels differ more by noise than they
+/// are apart, and their mean is nearer to the surface than they are. It also bounds what a key
+/// frame keeps in memory.
+///
+/// `rays` are the camera's pixel_rays(). A point's label is that of most of its pixels in `labels`;
+/// without such an image the cloud has no labels. All images are of one size. Points are in the
+/// order of their cells, row by row. Takes time linear in the number of pixels.
+[[nodiscard]] PointCloud local_cloud(const cv::Mat1f& depth,
+                                     const ColorImage& color,
                                      const cv::Mat2f& rays,
                                      const LocalCloudConfig& config,
-                                     const cv::Mat1b& dynamic = {},
                                      const cv::Mat1b& labels = {});
 
 }  // namespace stillmap

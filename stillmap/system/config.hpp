@@ -3,11 +3,11 @@
 
 #include <cstdint>
 
-#include "stillmap/cloud/local_cloud.hpp"
 #include "stillmap/core/fields.hpp"
 #include "stillmap/features/orb_extractor.hpp"
 #include "stillmap/mapping/local_mapper.hpp"
 #include "stillmap/optim/measurement_model.hpp"
+#include "stillmap/system/cloud_stage.hpp"
 #include "stillmap/system/dynamics_stage.hpp"
 #include "stillmap/tracking/keyframe_policy.hpp"
 #include "stillmap/tracking/relocalizer.hpp"
@@ -46,7 +46,7 @@ struct SystemConfig {
   RelocalizerConfig relocalization;
   MappingConfig mapping;
   LoopConfig loop;
-  LocalCloudConfig cloud;
+  CloudConfig cloud;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "stillmap/cloud/local_cloud.hpp"
 #include "stillmap/core/error.hpp"
 #include "stillmap/mapping/map_adjustment.hpp"
 #include "stillmap/system/label_image.hpp"
@@ -24,6 +23,7 @@ constexpr std::int64_t kAll = std::numeric_limits<std::int64_t>::max();
 
 System::System(const SystemConfig& config, const CameraModel& camera, int threads)
     : config_(checked(config)),
+      cloud_config_(config.cloud.decided(config.dynamics.mode)),
       camera_(camera),
       rays_(pixel_rays(camera)),
       dynamics_(config.dynamics, camera, config.seed),
@@ -33,13 +33,13 @@ System::System(const SystemConfig& config, const CameraModel& camera, int thread
       tracker_(config.tracking.tracker, config.relocalization, camera, measure_, config.seed),
       worker_(threads > 1 ? std::make_unique<Worker>() : nullptr),
       mapping_jobs_(worker_.get()),
-      cloud_jobs_(worker_.get()) {}
+      view_jobs_(worker_.get()) {}
 
 FrameResult System::process(const FramePtr& frame, FrameObjects objects) {
   Stopwatch total, stage;
   FrameResult result;
   for (const MapUpdate& update : mapping_jobs_.collect_due(frame_number_)) map_.apply(update);
-  collect_clouds(frame_number_);
+  collect_views(frame_number_);
   result.stages.push_back({"mapping", stage.lap_ms()});
 
   const std::optional<Eigen::Isometry3d> expected =
@@ -67,10 +67,15 @@ FrameResult System::process(const FramePtr& frame, FrameObjects objects) {
   ++since_keyframe_.frames;
   if (tracked.status == TrackingStatus::kInitialized ||
       wants_keyframe(config_.keyframe, tracked, since_keyframe_)) {
-    tracked.reference = insert_keyframe(frame, result);
+    tracked.reference = insert_keyframe(*frame, result);
     result.is_keyframe = true;
   }
-  if (has_pose(tracked)) record(*frame, tracked, tracked.T_world_camera);
+  ++since_view_;
+  if (has_pose(tracked)) {
+    record(*frame, tracked, tracked.T_world_camera);
+    const int gap = config_.cloud.view_gap_frames;
+    if (result.is_keyframe || (gap > 0 && since_view_ >= gap)) add_view(frame, result.dynamics);
+  }
   if (dynamics_.enabled()) {
     has_pose(tracked) ? dynamics_.remember(*frame, tracked.T_world_camera, result.dynamics)
                       : dynamics_.forget();
@@ -110,11 +115,11 @@ void System::count_landmarks(const TrackedFrame& tracked) {
   }
 }
 
-KeyframeId System::insert_keyframe(const FramePtr& frame, const FrameResult& result) {
+KeyframeId System::insert_keyframe(const RgbdFrame& frame, const FrameResult& result) {
   const TrackedFrame& tracked = result.tracked;
   Keyframe keyframe;
-  keyframe.frame = frame->id;
-  keyframe.stamp = frame->stamp;
+  keyframe.frame = frame.id;
+  keyframe.stamp = frame.stamp;
   keyframe.T_world_camera = tracked.T_world_camera;
   keyframe.features = tracked.features;
   const KeyframeId id = map_.add_keyframe(std::move(keyframe));
@@ -134,19 +139,26 @@ KeyframeId System::insert_keyframe(const FramePtr& frame, const FrameResult& res
       frame_number_ + config_.mapping.lag_frames, [window, core = std::move(core), this] {
         return map_locally(std::move(*window), core, camera_, measure_, config_.mapping);
       });
-  const cv::Mat1b dynamic = result.dynamics.excluded;
-  const cv::Mat1b labels = label_image(frame->depth, result.dynamics);
-  cloud_jobs_.submit(
-      frame_number_ + config_.mapping.lag_frames, [frame, dynamic, labels, id, this] {
-        return std::pair(id,
-                         std::make_shared<const PointCloud>(
-                             local_cloud(*frame, rays_, config_.cloud, dynamic, labels)));
-      });
   return id;
 }
 
-void System::collect_clouds(std::int64_t frame) {
-  for (auto& [id, cloud] : cloud_jobs_.collect_due(frame)) clouds_[id] = std::move(cloud);
+// The last frame that was recorded.
+void System::add_view(const FramePtr& frame, const FrameDynamics& dynamics) {
+  const std::size_t index = views_.size();
+  views_.push_back({records_.size() - 1, nullptr});
+  since_view_ = 0;
+  const NotStatic masks = not_static(dynamics);
+  const cv::Mat1b labels = label_image(frame->depth, dynamics);
+  view_jobs_.submit(
+      frame_number_ + config_.mapping.lag_frames, [frame, masks, labels, index, this] {
+        return FinishedView(index,
+                            std::make_shared<const StaticView>(
+                                static_view(*frame, rays_, cloud_config_, masks, labels)));
+      });
+}
+
+void System::collect_views(std::int64_t frame) {
+  for (auto& [i, view] : view_jobs_.collect_due(frame)) views_[i].view = std::move(view);
 }
 
 void System::record(const RgbdFrame& frame,
@@ -159,7 +171,7 @@ void System::record(const RgbdFrame& frame,
 
 RunResult System::finish() {
   for (const MapUpdate& update : mapping_jobs_.collect_due(kAll)) map_.apply(update);
-  collect_clouds(kAll);
+  collect_views(kAll);
 
   RunResult result;
   result.lost_at_end = lost_;
@@ -167,7 +179,10 @@ RunResult System::finish() {
   for (const auto& [id, keyframe] : map_.keyframes()) {
     result.keyframes.push_back({keyframe.stamp, keyframe.T_world_camera});
   }
-  result.map = final_cloud();
+  result.views = view_poses();
+  std::vector<std::optional<Eigen::Isometry3d>> T_world_views;
+  for (const StampedPose& view : result.views) T_world_views.emplace_back(view.T_world_camera);
+  result.map = cloud_with_poses(T_world_views);
   return result;
 }
 
@@ -175,28 +190,32 @@ Trajectory System::final_trajectory() const {
   Trajectory trajectory;
   trajectory.reserve(records_.size());
   for (const FrameRecord& record : records_) {
-    trajectory.push_back(
-        {record.stamp, map_.T_world_keyframe(record.reference) * record.T_reference_frame});
+    trajectory.push_back({record.stamp, T_world_frame(record)});
   }
   return trajectory;
 }
 
-PointCloud System::final_cloud() const {
-  std::vector<std::optional<Eigen::Isometry3d>> poses;
-  for (const auto& [id, keyframe] : map_.keyframes()) poses.emplace_back(keyframe.T_world_camera);
-  return cloud_with_poses(poses);
+Eigen::Isometry3d System::T_world_frame(const FrameRecord& record) const {
+  return map_.T_world_keyframe(record.reference) * record.T_reference_frame;
+}
+
+Trajectory System::view_poses() const {
+  Trajectory poses;
+  for (const ViewRecord& view : views_) {
+    const FrameRecord& record = records_[view.frame];
+    poses.push_back({record.stamp, T_world_frame(record)});
+  }
+  return poses;
 }
 
 PointCloud System::cloud_with_poses(
-    std::span<const std::optional<Eigen::Isometry3d>> T_world_keyframes) const {
-  STILLMAP_CHECK(T_world_keyframes.size() == map_.keyframes().size());
-  std::vector<PosedCloud> posed;
-  std::size_t i = 0;
-  for (const auto& [id, keyframe] : map_.keyframes()) {
-    const std::optional<Eigen::Isometry3d>& T_world_keyframe = T_world_keyframes[i++];
-    if (T_world_keyframe) posed.push_back({*T_world_keyframe, clouds_.at(id).get()});
+    std::span<const std::optional<Eigen::Isometry3d>> T_world_views) const {
+  STILLMAP_CHECK(T_world_views.size() == views_.size());
+  std::vector<PosedView> posed;
+  for (std::size_t i = 0; i < views_.size(); ++i) {
+    if (T_world_views[i]) posed.push_back({*T_world_views[i], views_[i].view.get()});
   }
-  return global_cloud(posed, config_.cloud.voxel_size_m);
+  return static_map(posed, camera_, cloud_config_);
 }
 
 }  // namespace stillmap

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <map>
 #include <memory>
 #include <optional>
 #include <span>
 
-#include "stillmap/cloud/global_cloud.hpp"
 #include "stillmap/core/rgbd_frame.hpp"
 #include "stillmap/core/trajectory.hpp"
 #include "stillmap/map/map.hpp"
+#include "stillmap/system/cloud_stage.hpp"
 #include "stillmap/system/config.hpp"
 #include "stillmap/system/dynamics_stage.hpp"
 #include "stillmap/system/frame_result.hpp"
@@ -22,6 +21,7 @@ namespace stillmap {
 struct RunResult {
   Trajectory trajectory;  ///< frames that were tracked
   Trajectory keyframes;
+  Trajectory views;  ///< frames of which the map's surface is made
   PointCloud map;
   bool lost_at_end = false;
 };
@@ -43,10 +43,10 @@ class System {
   /// Ends the run: waits for pending work and assembles the cloud. Call once.
   [[nodiscard]] RunResult finish();
 
-  /// The cloud as it would be with the key frames at other poses, in the order of
-  /// RunResult::keyframes; those without are left out. After finish().
+  /// The cloud as it would be with its views at other poses, in the order of RunResult::views;
+  /// those without are left out. After finish().
   [[nodiscard]] PointCloud cloud_with_poses(
-      std::span<const std::optional<Eigen::Isometry3d>> T_world_keyframes) const;
+      std::span<const std::optional<Eigen::Isometry3d>> T_world_views) const;
 
   [[nodiscard]] const Map& map() const { return map_; }
   /// Readout time of the camera's rolling shutter, as learnt so far.
@@ -60,17 +60,26 @@ class System {
     Eigen::Isometry3d T_reference_frame;
   };
 
+  struct ViewRecord {
+    std::size_t frame;                       // its record's index
+    std::shared_ptr<const StaticView> view;  // null until it is ready
+  };
+  using FinishedView = std::pair<std::size_t, std::shared_ptr<const StaticView>>;
+
   [[nodiscard]] TrackedFrame track(const RgbdFrame& frame, Features features);
-  [[nodiscard]] KeyframeId insert_keyframe(const FramePtr& frame, const FrameResult& result);
+  [[nodiscard]] KeyframeId insert_keyframe(const RgbdFrame& frame, const FrameResult& result);
+  void add_view(const FramePtr& frame, const FrameDynamics& dynamics);
+  [[nodiscard]] Eigen::Isometry3d T_world_frame(const FrameRecord& record) const;
   void count_landmarks(const TrackedFrame& tracked);
-  void collect_clouds(std::int64_t frame);
+  void collect_views(std::int64_t frame);
   void record(const RgbdFrame& frame,
               const TrackedFrame& tracked,
               const Eigen::Isometry3d& T_world_camera);
   [[nodiscard]] Trajectory final_trajectory() const;
-  [[nodiscard]] PointCloud final_cloud() const;
+  [[nodiscard]] Trajectory view_poses() const;
 
   SystemConfig config_;
+  CloudConfig cloud_config_;  // decided
   CameraModel camera_;
   cv::Mat2f rays_;
   DynamicsStage dynamics_;
@@ -83,11 +92,12 @@ class System {
   KeyframeAge since_keyframe_;
   bool lost_ = true;  // until the first frame
   std::vector<FrameRecord> records_;
-  std::map<KeyframeId, std::shared_ptr<const PointCloud>> clouds_;
+  std::vector<ViewRecord> views_;  // of what goes into the map
+  int since_view_ = 0;             // frames
 
   std::unique_ptr<Worker> worker_;
   JobLedger<MapUpdate> mapping_jobs_;
-  JobLedger<std::pair<KeyframeId, std::shared_ptr<const PointCloud>>> cloud_jobs_;
+  JobLedger<FinishedView> view_jobs_;
 };
 
 }  // namespace stillmap

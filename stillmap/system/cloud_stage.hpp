@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <opencv2/core/mat.hpp>
+
+#include "stillmap/cloud/free_space.hpp"
+#include "stillmap/cloud/local_cloud.hpp"
+#include "stillmap/cloud/range_image.hpp"
+#include "stillmap/cloud/static_depth.hpp"
+#include "stillmap/core/camera.hpp"
+#include "stillmap/core/fields.hpp"
+#include "stillmap/core/rgbd_frame.hpp"
+#include "stillmap/system/dynamics_stage.hpp"
+
+namespace stillmap {
+
+/// How the map's points are made of what the key frames see.
+struct CloudConfig {
+  double voxel_size_m = 0.01;
+  StaticDepthConfig depth;
+  LocalCloudConfig local;
+  int view_gap_frames = 8;
+  std::string free_space = "by_mode";
+  RangeImageConfig range;
+  FreeSpaceConfig free;
+
+  /// With every "by_mode" decided for a `dynamics.mode`.
+  ///
+  /// `paper` gets Fan 2020 to the letter: edges by its fixed threshold, and islands. `full` has
+  /// edges by a threshold that grows with depth as the camera's noise does, since the fixed one
+  /// costs the farther walls; instead of islands it removes what other views see through, or take
+  /// for what moves: most islands are legs of chairs, or what is seen between people. `off` and
+  /// `mask` get nothing: they are there to be compared with.
+  [[nodiscard]] CloudConfig decided(std::string_view dynamics_mode) const;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("voxel_size_m",
+          self.voxel_size_m,
+          FieldInfo{
+              "edge of the voxels that the map is thinned to, one point each", "m", 0.001, 1.0});
+    StaticDepthConfig::fields(self.depth, visit);
+    LocalCloudConfig::fields(self.local, visit);
+    visit(
+        "view_gap_frames",
+        self.view_gap_frames,
+        FieldInfo{"so long after the last view that went into the map, a frame does that is no key "
+                  "frame; 0: key frames alone",
+                  "frames",
+                  0,
+                  1000000});
+    visit("free_space",
+          self.free_space,
+          FieldInfo{
+              "removal of points that other views see through; by_mode: as dynamics.mode has it",
+              "",
+              0,
+              0,
+              {"by_mode", "off", "on"}});
+    visit.group("range", self.range);
+    visit.group("free", self.free);
+  }
+};
+
+/// What a frame keeps for the map, in its camera's coordinates.
+struct StaticView {
+  PointCloud cloud;
+  RangeImage range;  ///< empty when free space is not asked for
+};
+
+struct PosedView {
+  Eigen::Isometry3d T_world_camera;
+  const StaticView* view;  ///< not null; not owned
+};
+
+/// The map of the static world from views in the order of their time. `config` is decided.
+[[nodiscard]] PointCloud static_map(std::span<const PosedView> views,
+                                    const CameraModel& camera,
+                                    const CloudConfig& config);
+
+/// The static surface in a frame. `not_static.excluded` leaves it; `labels` may be empty; `config`
+/// is decided.
+[[nodiscard]] StaticView static_view(const RgbdFrame& frame,
+                                     const cv::Mat2f& rays,
+                                     const CloudConfig& config,
+                                     const NotStatic& not_static,
+                                     const cv::Mat1b& labels);
+
+/// What the dynamics stage says of a frame, for the cloud: excluded are all of its dynamic pixels
+/// and a margin; known to move are those of objects, and of depth jumps that cover a square with
+/// sides of 1/70 of the image's width, which noise does not.
+[[nodiscard]] NotStatic not_static(const FrameDynamics& dynamics);
+
+}  // namespace stillmap
