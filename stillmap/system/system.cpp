@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <string>
 
 #include "stillmap/cloud/local_cloud.hpp"
 #include "stillmap/core/error.hpp"
@@ -183,18 +184,20 @@ Trajectory System::final_trajectory() const {
 
 PointCloud System::final_cloud() const {
   std::vector<std::optional<Eigen::Isometry3d>> poses;
-  for (const auto& [id, keyframe] : map_.keyframes()) poses.emplace_back(keyframe.T_world_camera);
+  for (const StampedPose& pose : final_trajectory()) poses.emplace_back(pose.T_world_camera);
   return cloud_with_poses(poses);
 }
 
 PointCloud System::cloud_with_poses(
-    std::span<const std::optional<Eigen::Isometry3d>> T_world_keyframes) const {
-  STILLMAP_CHECK(T_world_keyframes.size() == map_.keyframes().size());
+    std::span<const std::optional<Eigen::Isometry3d>> T_world_frames) const {
+  STILLMAP_CHECK(T_world_frames.size() == records_.size());
+  std::map<std::string, std::size_t> record_of;  // by stamp
+  for (std::size_t i = 0; i < records_.size(); ++i) record_of[records_[i].stamp.text] = i;
   std::vector<PosedCloud> posed;
-  std::size_t i = 0;
   for (const auto& [id, keyframe] : map_.keyframes()) {
-    const std::optional<Eigen::Isometry3d>& T_world_keyframe = T_world_keyframes[i++];
-    if (T_world_keyframe) posed.push_back({*T_world_keyframe, clouds_.at(id).get()});
+    const std::optional<Eigen::Isometry3d>& pose =
+        T_world_frames[record_of.at(keyframe.stamp.text)];
+    if (pose) posed.push_back({*pose, clouds_.at(id).get()});
   }
   return global_cloud(posed, config_.cloud.voxel_size_m);
 }

@@ -43,10 +43,10 @@ class System {
   /// Ends the run: waits for pending work and assembles the cloud. Call once.
   [[nodiscard]] RunResult finish();
 
-  /// The cloud as it would be with the key frames at other poses, in the order of
-  /// RunResult::keyframes; those without are left out. After finish().
+  /// The cloud as it would be with the frames at other poses, in the order of
+  /// RunResult::trajectory; frames without a pose add nothing to it. After finish().
   [[nodiscard]] PointCloud cloud_with_poses(
-      std::span<const std::optional<Eigen::Isometry3d>> T_world_keyframes) const;
+      std::span<const std::optional<Eigen::Isometry3d>> T_world_frames) const;
 
   [[nodiscard]] const Map& map() const { return map_; }
   /// Readout time of the camera's rolling shutter, as learnt so far.
