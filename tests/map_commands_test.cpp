@@ -156,6 +156,9 @@ TEST_F(MapCommands, ViewsAreTiled) {
   const cv::Mat3b picture = read_color(folder_ / "two.png").mat;
   ASSERT_EQ(picture.size(), cv::Size(2 * 160 + 12, 120 + 26));
   EXPECT_NE(picture(86, 80), cv::Vec3b(255, 255, 255));  // something is to be seen
+  EXPECT_EQ(run("view map.ply --up=-z --from top --out up.png").exit_code, 0);
+  EXPECT_NE(content("up.png"), "");
+  expect_refused("view map.ply --up w --out a.png", "--up");
   expect_refused("view map.ply --from below --out a.png", "--from below");
   expect_refused("view map.ply --size 10x10 --out a.png", "--size 10x10");
   expect_refused("view map.ply", "--out");

@@ -72,6 +72,7 @@ PosedSequence as_true(const PointCloud& map,
                       const TrajectoryFile& estimate) {
   PosedSequence posed{.map = moved(map, required_alignment(groundtruth, estimate)),
                       .T_world_camera = {}};
+  check_extent(posed.map, "the map, moved to " + groundtruth.file);
   for (std::uint32_t i = 0; i < sequence.size(); ++i) {
     const double stamp_s = sequence.entry(FrameId(i)).stamp.seconds;
     const std::optional<Eigen::Isometry3d> pose = pose_at(groundtruth.poses, stamp_s);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,6 +33,7 @@ struct ViewArguments {
   std::string from = "all";
   std::string size = "640x480";
   std::string groundtruth;
+  std::string up;  ///< empty: found
 };
 
 struct NamedSide {
@@ -90,6 +92,13 @@ std::vector<PosedMap> read_maps(const ViewArguments& arguments) {
   return maps;
 }
 
+// "z", "-y": the axis that points up; nothing for no text.
+std::optional<Eigen::Vector3d> up_axis(const std::string& name) {
+  if (name.empty()) return std::nullopt;
+  const double sign = name.front() == '-' ? -1.0 : 1.0;
+  return sign * Eigen::Vector3d::Unit(name.back() - 'x');
+}
+
 std::string caption(const ViewArguments& arguments, std::size_t map, std::string_view side) {
   std::string text = map < arguments.names.size() ? arguments.names[map] : "";
   if (text.empty()) return std::string(side);
@@ -108,7 +117,8 @@ void view(const ViewArguments& arguments) {
   const std::vector<NamedSide> sides = chosen_sides(arguments.from);
   const PictureSize size = parse_picture_size(arguments.size);
   const std::vector<PosedMap> maps = read_maps(arguments);
-  const SceneFrame scene = scene_frame(maps.front().cloud, maps.front().cameras);
+  const SceneFrame scene =
+      scene_frame(maps.front().cloud, maps.front().cameras, up_axis(arguments.up));
   const PointCloud first = cut_open(maps.front().cloud, scene);
   std::vector<CaptionedPicture> pictures;
   for (std::size_t i = 0; i < maps.size(); ++i) {
@@ -137,6 +147,12 @@ void add_view_command(CLI::App& app, CommandResult&) {
   command->add_option("--from", arguments->from, "front, left, top or all")->capture_default_str();
   command->add_option("--size", arguments->size, "WIDTHxHEIGHT in pixels of each view")
       ->capture_default_str();
+  command
+      ->add_option("--up",
+                   arguments->up,
+                   "axis of the world that points up; else found from floors and tables, where the "
+                   "cameras of the run, or without them y down, tell it roughly")
+      ->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}));
   command->add_option("--name", arguments->names, "of a map, as caption; repeatable, in order")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);

@@ -91,7 +91,10 @@ View view_from(MapSide side, const SceneFrame& scene, const PointCloud& map, con
 }
 
 PointCloud cut_open(const PointCloud& map, const SceneFrame& scene) {
-  const double highest = head_height(scene);
+  constexpr double kOverFloor_m = 1.9;
+  const double highest = scene.cameras.isEmpty() && !scene.box.isEmpty()
+                             ? scene.box.max().y() - kOverFloor_m
+                             : head_height(scene);
   PointCloud cut;
   for (const std::size_t i : points_in_scene(map, scene)) {
     const Eigen::Vector3d p = map.positions[i].cast<double>();

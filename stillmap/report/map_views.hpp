@@ -16,7 +16,8 @@ namespace stillmap {
 /// Where one looks at a map from: behind the cameras, their left, or straight above.
 enum class MapSide { kFront, kLeft, kTop };
 
-/// The map without what hangs over the cameras' heads, and without strays far outside the scene.
+/// The map without what hangs over the cameras' heads (without cameras: over 1.9 m above the
+/// lowest), and without strays far outside the scene.
 [[nodiscard]] PointCloud cut_open(const PointCloud& map, const SceneFrame& scene);
 
 struct ViewSize {

@@ -82,6 +82,15 @@ TEST(CutOpen, takes_the_ceiling_and_strays_away) {
   }
 }
 
+TEST(CutOpen, goes_by_the_floor_where_there_are_no_cameras) {
+  const PointCloud map = room();
+  const PointCloud cut = cut_open(map, scene_frame(map, {}));
+  ASSERT_GT(cut.size(), 1000U);
+  float highest = 1;
+  for (const Eigen::Vector3f& p : cut.positions) highest = std::min(highest, p.y());
+  EXPECT_NEAR(highest, 1.2 - 1.9, 0.05);
+}
+
 TEST(ViewFrom, front_has_the_back_wall_up_and_the_left_wall_left) {
   const ColorImage image = picture(MapSide::kFront);
   EXPECT_GT(patch(image, kBackWall).pixels, 1000);

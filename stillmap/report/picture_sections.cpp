@@ -34,7 +34,7 @@ std::string map_figures(const RunReport& report, const SceneFrame& scene) {
     }
     out += figure_html(picture, "The map, " + std::string(figure.caption), figure.caption);
   }
-  return "<div class=\"samples\">" + out + "</div>";
+  return "<div class=\"views\">" + out + "</div>";
 }
 
 const char* const kViewHtml = R"(<figure id="map-view" hidden>

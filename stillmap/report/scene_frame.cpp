@@ -88,7 +88,8 @@ Eigen::Matrix3d axes_from(const Eigen::Vector3d& down, const Eigen::Vector3d& fo
 }
 
 Eigen::Matrix3d level_rotation(const std::vector<Eigen::Vector3d>& points,
-                               const Trajectory& cameras) {
+                               const Trajectory& cameras,
+                               const std::optional<Eigen::Vector3d>& up_world) {
   Eigen::Vector3d down = Eigen::Vector3d::Zero();
   Eigen::Vector3d forward = Eigen::Vector3d::Zero();
   for (const StampedPose& pose : cameras) {
@@ -97,6 +98,7 @@ Eigen::Matrix3d level_rotation(const std::vector<Eigen::Vector3d>& points,
   }
   if (!(down.norm() > 1e-6)) down = Eigen::Vector3d::UnitY();
   if (!(forward.norm() > 1e-6)) forward = Eigen::Vector3d::UnitZ();
+  if (up_world) return axes_from(-up_world->normalized(), forward.normalized()).transpose();
   const Eigen::Matrix3d R_world_rough = axes_from(down.normalized(), forward);
   const Tilt coarse = best_tilt(points, R_world_rough, Tilt{}, 3 * kDegree);
   const Tilt fine = best_tilt(points, R_world_rough, coarse, 0.2 * kDegree);
@@ -127,9 +129,11 @@ double typical_spacing(const std::vector<Eigen::Vector3d>& points, const Eigen::
 
 }  // namespace
 
-SceneFrame scene_frame(const PointCloud& map, const Trajectory& cameras) {
+SceneFrame scene_frame(const PointCloud& map,
+                       const Trajectory& cameras,
+                       const std::optional<Eigen::Vector3d>& up_world) {
   SceneFrame scene;
-  scene.R_level_world = level_rotation(finite_points(map, 4000), cameras);
+  scene.R_level_world = level_rotation(finite_points(map, 4000), cameras, up_world);
   std::vector<Eigen::Vector3d> points = finite_points(map, 2'000'000);
   for (Eigen::Vector3d& p : points) p = scene.R_level_world * p;
   scene.box = inner_box(points);

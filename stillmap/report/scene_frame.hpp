@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -23,8 +24,11 @@ struct SceneFrame {
 
 /// Works out the floor's direction from the map itself, as the world's axes are those of a camera
 /// that may have been tilted (up to 45 degrees): heights of the points are most alike when floors,
-/// tables and ceilings are level. Points that are not finite are left out.
-[[nodiscard]] SceneFrame scene_frame(const PointCloud& map, const Trajectory& cameras);
+/// tables and ceilings are level. With `up_world` (not zero) that is the direction. Points that are
+/// not finite are left out.
+[[nodiscard]] SceneFrame scene_frame(const PointCloud& map,
+                                     const Trajectory& cameras,
+                                     const std::optional<Eigen::Vector3d>& up_world = {});
 
 /// Indexes of the map's points that are finite and not far outside the scene's box, ascending.
 [[nodiscard]] std::vector<std::size_t> points_in_scene(const PointCloud& map,

@@ -43,6 +43,14 @@ TEST(SceneFrame, finds_the_floor_of_a_tilted_world) {
   EXPECT_NEAR((scene.R_level_world * Eigen::Vector3d::UnitZ()).x(), 0, 1e-9);  // cameras' gaze
 }
 
+TEST(SceneFrame, takes_the_direction_that_is_given) {
+  for (const Eigen::Vector3d& up : {Eigen::Vector3d(0, 0, 2), Eigen::Vector3d(-1, 0, 0)}) {
+    const SceneFrame scene = scene_frame(room(), {}, up);
+    EXPECT_TRUE((scene.R_level_world * up.normalized()).isApprox(-Eigen::Vector3d::UnitY()));
+    EXPECT_NEAR(scene.R_level_world.determinant(), 1, 1e-9);
+  }
+}
+
 TEST(SceneFrame, box_and_spacing_of_a_level_room) {
   const SceneFrame scene = scene_frame(room(), level_camera());
   EXPECT_LT((scene.box.min() - Eigen::Vector3d(-2, -1.25, 1)).norm(), 0.2);

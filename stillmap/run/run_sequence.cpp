@@ -80,16 +80,16 @@ void add_map_at_true_poses(SequenceRun& run, const System& system, const Traject
   if (!alignment) return;
   const Eigen::Isometry3d T_world_truth = alignment->inverse();
   std::vector<std::optional<Eigen::Isometry3d>> poses;
-  for (const StampedPose& view : run.result.views) {
-    poses.push_back(pose_at(truth, view.stamp.seconds));
+  for (const StampedPose& frame : run.result.trajectory) {
+    poses.push_back(pose_at(truth, frame.stamp.seconds));
     if (poses.back()) poses.back() = T_world_truth * *poses.back();
   }
   const auto unknown = std::ranges::count_if(poses, [](const auto& pose) { return !pose; });
   if (unknown > 0) {
-    run.report.warnings.push_back(fmt::format(
-        "{} of {} frames of the map have no true pose and are left out of the map at true poses",
-        unknown,
-        poses.size()));
+    run.report.warnings.push_back(
+        fmt::format("{} of {} frames have no true pose and add nothing to the map at true poses",
+                    unknown,
+                    poses.size()));
   }
   run.map_at_true_poses = system.cloud_with_poses(poses);
 }

@@ -39,8 +39,8 @@ struct SequenceRun {
   /// All that the run itself knows; `map` is not set. What concerns ground truth, configuration and
   /// version is the caller's.
   RunReport report;
-  /// The map with the key frames where ground truth has them, in the world of the run; key frames
-  /// without true pose are left out. Nothing without ground truth, or with too little to align.
+  /// The map with the frames where ground truth has them, in the world of the run; frames without a
+  /// true pose add nothing to it. Nothing without ground truth, or with too little to align.
   std::optional<PointCloud> map_at_true_poses;
   /// What objects.jsonl says; nullopt when nothing looked for objects or nothing is done about
   /// them.

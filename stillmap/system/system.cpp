@@ -179,10 +179,11 @@ RunResult System::finish() {
   for (const auto& [id, keyframe] : map_.keyframes()) {
     result.keyframes.push_back({keyframe.stamp, keyframe.T_world_camera});
   }
-  result.views = view_poses();
-  std::vector<std::optional<Eigen::Isometry3d>> T_world_views;
-  for (const StampedPose& view : result.views) T_world_views.emplace_back(view.T_world_camera);
-  result.map = cloud_with_poses(T_world_views);
+  std::vector<std::optional<Eigen::Isometry3d>> T_world_frames;
+  for (const StampedPose& frame : result.trajectory) {
+    T_world_frames.emplace_back(frame.T_world_camera);
+  }
+  result.map = cloud_with_poses(T_world_frames);
   return result;
 }
 
@@ -199,21 +200,13 @@ Eigen::Isometry3d System::T_world_frame(const FrameRecord& record) const {
   return map_.T_world_keyframe(record.reference) * record.T_reference_frame;
 }
 
-Trajectory System::view_poses() const {
-  Trajectory poses;
-  for (const ViewRecord& view : views_) {
-    const FrameRecord& record = records_[view.frame];
-    poses.push_back({record.stamp, T_world_frame(record)});
-  }
-  return poses;
-}
-
 PointCloud System::cloud_with_poses(
-    std::span<const std::optional<Eigen::Isometry3d>> T_world_views) const {
-  STILLMAP_CHECK(T_world_views.size() == views_.size());
+    std::span<const std::optional<Eigen::Isometry3d>> T_world_frames) const {
+  STILLMAP_CHECK(T_world_frames.size() == records_.size());
   std::vector<PosedView> posed;
-  for (std::size_t i = 0; i < views_.size(); ++i) {
-    if (T_world_views[i]) posed.push_back({*T_world_views[i], views_[i].view.get()});
+  for (const ViewRecord& view : views_) {
+    const std::optional<Eigen::Isometry3d>& T_world_frame = T_world_frames[view.frame];
+    if (T_world_frame) posed.push_back({*T_world_frame, view.view.get()});
   }
   return static_map(posed, camera_, cloud_config_);
 }

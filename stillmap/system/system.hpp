@@ -21,7 +21,6 @@ namespace stillmap {
 struct RunResult {
   Trajectory trajectory;  ///< frames that were tracked
   Trajectory keyframes;
-  Trajectory views;  ///< frames of which the map's surface is made
   PointCloud map;
   bool lost_at_end = false;
 };
@@ -43,10 +42,10 @@ class System {
   /// Ends the run: waits for pending work and assembles the cloud. Call once.
   [[nodiscard]] RunResult finish();
 
-  /// The cloud as it would be with its views at other poses, in the order of RunResult::views;
-  /// those without are left out. After finish().
+  /// The cloud as it would be with the frames at other poses, in the order of
+  /// RunResult::trajectory; frames without a pose add nothing to it. After finish().
   [[nodiscard]] PointCloud cloud_with_poses(
-      std::span<const std::optional<Eigen::Isometry3d>> T_world_views) const;
+      std::span<const std::optional<Eigen::Isometry3d>> T_world_frames) const;
 
   [[nodiscard]] const Map& map() const { return map_; }
   /// Readout time of the camera's rolling shutter, as learnt so far.
@@ -76,7 +75,6 @@ class System {
               const TrackedFrame& tracked,
               const Eigen::Isometry3d& T_world_camera);
   [[nodiscard]] Trajectory final_trajectory() const;
-  [[nodiscard]] Trajectory view_poses() const;
 
   SystemConfig config_;
   CloudConfig cloud_config_;  // decided

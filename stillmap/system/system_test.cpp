@@ -118,9 +118,9 @@ TEST(System, MakesItsCloudAgainUnderOtherPoses) {
   for (std::uint32_t k = 0; k < kFrames; ++k) (void)system.process(frame(k));
   const RunResult result = system.finish();
   std::vector<std::optional<Eigen::Isometry3d>> same, moved;
-  for (const StampedPose& view : result.views) {
-    same.emplace_back(view.T_world_camera);
-    moved.emplace_back(Eigen::Translation3d(0.64, 0, 0) * view.T_world_camera);
+  for (const StampedPose& pose : result.trajectory) {
+    same.emplace_back(pose.T_world_camera);
+    moved.emplace_back(Eigen::Translation3d(0.64, 0, 0) * pose.T_world_camera);
   }
   EXPECT_EQ(system.cloud_with_poses(same).positions, result.map.positions);
   const PointCloud other = system.cloud_with_poses(moved);
