@@ -110,6 +110,7 @@ std::string dump_yaml(std::span<const FieldRef> fields) {
   const std::vector<YamlLine> lines = yaml_lines(fields);
   std::size_t width = 0;
   for (const YamlLine& line : lines) width = std::max(width, line.text.size());
+  width = std::min<std::size_t>(width, 40);  // the few long lines stick out
   std::string yaml;
   for (const YamlLine& line : lines) {
     yaml += line.comment.empty() ? line.text + '\n'
