@@ -40,21 +40,7 @@ struct VocabularyTree;
 [[nodiscard]] std::unique_ptr<PlaceDesign> vocabulary_words(
     std::shared_ptr<const VocabularyTree> tree);
 
-/// (c) Each descriptor looks for its like in `tables` hash tables of `bits` bits, where it also
-/// tries the keys that differ in one bit if `probe`; like is nearer than `max_distance`.
-struct VotingOptions {
-  int tables = 4;
-  int bits = 16;
-  bool probe = false;
-  int max_distance = 50;
-  std::size_t max_bucket = 100000;  ///< a fuller one tells nothing
-};
-[[nodiscard]] std::unique_ptr<PlaceDesign> hash_voting(const VotingOptions& options);
-
-/// (c) as stillmap::PlaceIndex does it.
+/// (c) Descriptors vote for their like: stillmap::PlaceIndex.
 [[nodiscard]] std::unique_ptr<PlaceDesign> place_index(const PlaceOptions& options);
-
-/// No index: mutual best matches, as many comparisons as there are pairs of descriptors.
-[[nodiscard]] std::unique_ptr<PlaceDesign> all_pairs(int max_distance, double max_ratio);
 
 }  // namespace stillmap

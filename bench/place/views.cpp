@@ -46,7 +46,8 @@ std::vector<View> read_views(const std::string& text, std::size_t gap) {
     views.push_back({label.substr(0, at),
                      stamp_s - sequence.entry(FrameId(0)).stamp.seconds,
                      pose->T_world_camera,
-                     extractor.extract(frame->gray, frame->depth).descriptors});
+                     std::make_shared<const Features>(extractor.extract(frame->gray, frame->depth)),
+                     sequence.camera()});
   }
   return views;
 }

@@ -6,7 +6,8 @@
 
 #include <Eigen/Geometry>
 
-#include "stillmap/features/descriptor.hpp"
+#include "stillmap/core/camera.hpp"
+#include "stillmap/features/features.hpp"
 
 namespace stillmap {
 
@@ -15,7 +16,8 @@ struct View {
   std::string room;
   double time_s = 0;  ///< since the sequence began
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  std::vector<Descriptor> descriptors;
+  FeaturesPtr features;
+  CameraModel camera;
 };
 
 /// Every `gap`-th frame of a sequence that has a true pose. `text`: ROOM=FOLDER, or

@@ -10,7 +10,7 @@ namespace stillmap {
 
 /// What a random generator is for; a generator serves one purpose in one frame, so that adding a
 /// draw in one place changes no other.
-enum class RandomPurpose : std::uint32_t { kAbsolutePose = 1, kEpipolarGeometry = 2 };
+enum class RandomPurpose : std::uint32_t { kAbsolutePose = 1, kEpipolarGeometry = 2, kLoop = 3 };
 
 /// A fresh generator that depends on the run's seed, the frame and the purpose alone.
 [[nodiscard]] inline std::mt19937 rng_for(std::uint32_t seed,

@@ -2,6 +2,7 @@
 #include "stillmap/place/place_index.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "stillmap/core/error.hpp"
@@ -19,6 +20,42 @@ std::uint32_t bit_run(const Descriptor& d, unsigned first, unsigned bits) {
   return static_cast<std::uint32_t>(run & ((std::uint64_t{1} << bits) - 1U));
 }
 
+// Fibonacci hashing: neighbouring keys are spread over 2^bits places.
+std::uint32_t hashed(std::uint32_t key, unsigned bits) {
+  return (key * 2654435769U) >> (32U - bits);
+}
+
+// How many features of an image have a key.
+class KeyCounts {
+ public:
+  explicit KeyCounts(std::size_t features)
+      : bits_(static_cast<unsigned>(std::bit_width(4 * features + 8))),
+        cells_(std::size_t{1} << bits_) {}
+
+  void clear() { std::ranges::fill(cells_, Cell{}); }
+  void add(std::uint32_t key) {
+    Cell& cell = cells_[find(key)];
+    cell.key = key;
+    ++cell.count;
+  }
+  [[nodiscard]] int count(std::uint32_t key) const { return cells_[find(key)].count; }
+
+ private:
+  struct Cell {
+    std::uint32_t key = 0;
+    int count = 0;
+  };
+  // The key's cell, or the empty one where it belongs; at most a quarter is full.
+  [[nodiscard]] std::size_t find(std::uint32_t key) const {
+    std::size_t at = hashed(key, bits_);
+    while (cells_[at].count > 0 && cells_[at].key != key) at = (at + 1) & (cells_.size() - 1);
+    return at;
+  }
+
+  unsigned bits_;
+  std::vector<Cell> cells_;
+};
+
 }  // namespace
 
 PlaceIndex::PlaceIndex(const PlaceOptions& options)
@@ -27,33 +64,29 @@ PlaceIndex::PlaceIndex(const PlaceOptions& options)
                  options.keys * options.key_bits <= kDescriptorBits);
 }
 
-std::size_t PlaceIndex::bucket(std::uint32_t table, std::uint32_t key) const {
-  // Fibonacci hashing: neighbouring keys are spread over the table.
-  return (std::size_t{table} << kBucketBits) | ((key * 2654435769U) >> (32U - kBucketBits));
+std::size_t PlaceIndex::bucket(std::size_t table, std::uint32_t key) const {
+  return (table << kBucketBits) | hashed(key, kBucketBits);
 }
 
-std::vector<PlaceIndex::Key> PlaceIndex::distinctive_keys(
-    std::span<const Descriptor> descriptors) const {
+PlaceIndex::Keys PlaceIndex::keys_of(std::span<const Descriptor> descriptors) const {
+  const auto count = static_cast<std::size_t>(options_.keys);
   const auto bits = static_cast<unsigned>(options_.key_bits);
-  std::vector<Key> kept;
-  kept.reserve(descriptors.size() * static_cast<std::size_t>(options_.keys));
-  std::vector<std::uint64_t> keyed(descriptors.size());  // the key, then the feature
-  for (std::uint32_t table = 0; table < static_cast<std::uint32_t>(options_.keys); ++table) {
+  Keys result;
+  result.keys.resize(descriptors.size() * count);
+  result.distinctive.resize(result.keys.size());
+  KeyCounts counts(descriptors.size());
+  for (std::size_t table = 0; table < count; ++table) {
+    counts.clear();
     for (std::size_t i = 0; i < descriptors.size(); ++i) {
-      keyed[i] = (std::uint64_t{bit_run(descriptors[i], table * bits, bits)} << 32U) | i;
+      std::uint32_t& key = result.keys[i * count + table];
+      key = bit_run(descriptors[i], static_cast<unsigned>(table) * bits, bits);
+      counts.add(key);
     }
-    std::ranges::sort(keyed);
-    for (std::size_t begin = 0, end = 0; begin < keyed.size(); begin = end) {
-      while (end < keyed.size() && (keyed[end] >> 32U) == (keyed[begin] >> 32U)) ++end;
-      if (end - begin > static_cast<std::size_t>(options_.max_alike)) continue;
-      for (std::size_t i = begin; i < end; ++i) {
-        kept.push_back({table,
-                        static_cast<std::uint32_t>(keyed[i] >> 32U),
-                        static_cast<std::uint32_t>(keyed[i])});
-      }
+    for (std::size_t k = table; k < result.keys.size(); k += count) {
+      result.distinctive[k] = counts.count(result.keys[k]) <= options_.max_alike ? 1 : 0;
     }
   }
-  return kept;
+  return result;
 }
 
 void PlaceIndex::add(KeyframeId keyframe, std::span<const Descriptor> descriptors) {
@@ -66,8 +99,12 @@ void PlaceIndex::add(KeyframeId keyframe, std::span<const Descriptor> descriptor
   free_slots_.pop_back();
   slots_[keyframe] = slot;
   places_[slot] = {keyframe, {descriptors.begin(), descriptors.end()}};
-  for (const Key& key : distinctive_keys(descriptors)) {
-    buckets_[bucket(key.table, key.key)].push_back({key.key, slot, key.feature});
+  const Keys keys = keys_of(descriptors);
+  const auto count = static_cast<std::size_t>(options_.keys);
+  for (std::size_t k = 0; k < keys.keys.size(); ++k) {
+    if (keys.distinctive[k] == 0) continue;
+    buckets_[bucket(k % count, keys.keys[k])].push_back(
+        {keys.keys[k], slot, static_cast<std::uint32_t>(k / count)});
   }
 }
 
@@ -75,8 +112,10 @@ void PlaceIndex::remove(KeyframeId keyframe) {
   const auto found = slots_.find(keyframe);
   if (found == slots_.end()) return;
   const std::uint32_t slot = found->second;
-  for (const Key& key : distinctive_keys(places_[slot].descriptors)) {
-    std::erase_if(buckets_[bucket(key.table, key.key)],
+  const Keys keys = keys_of(places_[slot].descriptors);
+  for (std::size_t k = 0; k < keys.keys.size(); ++k) {
+    if (keys.distinctive[k] == 0) continue;
+    std::erase_if(buckets_[bucket(k % static_cast<std::size_t>(options_.keys), keys.keys[k])],
                   [&](const Entry& entry) { return entry.slot == slot; });
   }
   places_[slot] = {};
@@ -88,26 +127,28 @@ void PlaceIndex::remove(KeyframeId keyframe) {
 STILLMAP_POPCOUNT_CLONES
 std::vector<double> PlaceIndex::votes(std::span<const Descriptor> descriptors,
                                       const std::vector<std::uint8_t>& counted) const {
-  std::vector<std::vector<std::uint32_t>> found(descriptors.size());  // slots, per feature
-  for (const Key& key : distinctive_keys(descriptors)) {
-    const Descriptor& descriptor = descriptors[key.feature];
-    std::vector<std::uint32_t>& slots = found[key.feature];
-    for (const Entry& entry : buckets_[bucket(key.table, key.key)]) {
-      if (entry.key != key.key || counted[entry.slot] == 0) continue;
-      const Descriptor& other = places_[entry.slot].descriptors[entry.feature];
-      if (hamming_distance(descriptor, other) <= options_.max_distance) {
-        slots.push_back(entry.slot);
+  const auto places = static_cast<double>(std::ranges::count(counted, 1));
+  const auto count = static_cast<std::size_t>(options_.keys);
+  const Keys keys = keys_of(descriptors);
+  std::vector<double> result(places_.size(), 0.0);
+  std::vector<std::size_t> voted(places_.size(), descriptors.size());  // by which feature last
+  std::vector<std::uint32_t> found;
+  for (std::size_t i = 0; i < descriptors.size(); ++i) {
+    found.clear();
+    for (std::size_t table = 0; table < count; ++table) {
+      if (keys.distinctive[i * count + table] == 0) continue;
+      const std::uint32_t key = keys.keys[i * count + table];
+      for (const Entry& entry : buckets_[bucket(table, key)]) {
+        if (entry.key != key || voted[entry.slot] == i || counted[entry.slot] == 0) continue;
+        const Descriptor& other = places_[entry.slot].descriptors[entry.feature];
+        if (hamming_distance(descriptors[i], other) > options_.max_distance) continue;
+        voted[entry.slot] = i;
+        found.push_back(entry.slot);
       }
     }
-  }
-  const auto places = static_cast<double>(std::ranges::count(counted, 1));
-  std::vector<double> result(places_.size(), 0.0);
-  for (std::vector<std::uint32_t>& slots : found) {
-    std::ranges::sort(slots);
-    slots.erase(std::unique(slots.begin(), slots.end()), slots.end());
-    if (slots.empty()) continue;
-    const double rarity = 1.0 - std::log(static_cast<double>(slots.size())) / std::log(places + 1);
-    for (const std::uint32_t slot : slots) result[slot] += rarity;
+    if (found.empty()) continue;
+    const double rarity = 1.0 - std::log(static_cast<double>(found.size())) / std::log(places + 1);
+    for (const std::uint32_t slot : found) result[slot] += rarity;
   }
   return result;
 }

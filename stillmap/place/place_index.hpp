@@ -64,15 +64,15 @@ class PlaceIndex {
     KeyframeId keyframe;  // invalid: free
     std::vector<Descriptor> descriptors;
   };
-  /// A key of a feature that is told apart by it within its image.
-  struct Key {
-    std::uint32_t table;
-    std::uint32_t key;
-    std::uint32_t feature;
+  /// Keys of an image's features; all of feature 0, then of feature 1, ...
+  struct Keys {
+    std::vector<std::uint32_t> keys;
+    std::vector<std::uint8_t>
+        distinctive;  // 0: more than max_alike of the image's features share it
   };
 
-  [[nodiscard]] std::vector<Key> distinctive_keys(std::span<const Descriptor> descriptors) const;
-  [[nodiscard]] std::size_t bucket(std::uint32_t table, std::uint32_t key) const;
+  [[nodiscard]] Keys keys_of(std::span<const Descriptor> descriptors) const;
+  [[nodiscard]] std::size_t bucket(std::size_t table, std::uint32_t key) const;
   [[nodiscard]] std::vector<double> votes(std::span<const Descriptor> descriptors,
                                           const std::vector<std::uint8_t>& counted) const;
 
