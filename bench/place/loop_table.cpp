@@ -46,7 +46,7 @@ std::string row_name(const View& a, const View& b) {
 }
 
 void add_pair(Row& row, const View& a, const View& b, const MeasurementModel& measure) {
-  const LoopVerifierConfig chosen, lenient{.min_inliers = 4, .min_share = 0};
+  const LoopVerifierConfig chosen, lenient{.min_inliers = 4, .min_share = 0, .max_sigma_m = 10};
   const std::optional<VerifiedLoop> loop =
       LoopVerifier(lenient, a.camera, measure, 0)
           .verify(FrameId(static_cast<std::uint32_t>(row.pairs)),
@@ -57,7 +57,10 @@ void add_pair(Row& row, const View& a, const View& b, const MeasurementModel& me
   const auto inliers = static_cast<int>(loop->matches.size());
   row.most_inliers = std::max(row.most_inliers, inliers);
   row.largest_share = std::max(row.largest_share, loop->share());
-  if (inliers < chosen.min_inliers || loop->share() < chosen.min_share) return;
+  if (inliers < chosen.min_inliers || loop->share() < chosen.min_share ||
+      loop->sigma_m > chosen.max_sigma_m) {
+    return;
+  }
   ++row.accepted;
   row.shares.push_back(loop->share());
   const Eigen::Isometry3d truth = a.T_world_camera.inverse() * b.T_world_camera;
@@ -69,7 +72,7 @@ int run(const std::vector<std::string>& arguments) {
   for (const std::string& argument : arguments) {
     for (View& view : read_views(argument, kGap)) views.push_back(std::move(view));
   }
-  const MeasurementModel measure({}, pyramid_scales({}));
+  const MeasurementModel measure({.inverse_depth_sigma = 0.01}, pyramid_scales({}));
   std::map<std::string, Row> rows;
   std::size_t turn = 0;
   for (std::size_t i = 0; i < views.size(); ++i) {

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include <Eigen/Cholesky>
+
 #include "stillmap/core/random.hpp"
 #include "stillmap/core/rigid_align.hpp"
 #include "stillmap/optim/pose_optimizer.hpp"
@@ -112,15 +114,39 @@ std::optional<Eigen::Isometry3d> LoopVerifier::sample(FrameId frame,
   return best;
 }
 
+// Half way between what a sees of b's points and what b sees of a's.
 Eigen::Isometry3d LoopVerifier::refine(const LoopView& a,
                                        const LoopView& b,
                                        const Eigen::Isometry3d& T_a_b,
                                        std::span<const Match> matches) const {
-  std::vector<PoseObservation> observations;
+  std::vector<PoseObservation> by_a, by_b;
   for (const auto& [in_a, in_b] : matches) {
-    observations.push_back({*b.p_camera[in_b], measure_(*a.features, in_a)});
+    by_a.push_back({*b.p_camera[in_b], measure_(*a.features, in_a)});
+    if (a.p_camera[in_a]) by_b.push_back({*a.p_camera[in_a], measure_(*b.features, in_b)});
   }
-  return optimize_pose(camera_, T_a_b, observations).T_camera_world;
+  const Eigen::Isometry3d of_a = optimize_pose(camera_, T_a_b, by_a).T_camera_world;
+  const Eigen::Isometry3d of_b = optimize_pose(camera_, T_a_b.inverse(), by_b).T_camera_world;
+  return interpolate(of_a, of_b.inverse(), 0.5);
+}
+
+// How well the matches fix the pose, from the curvature of the errors in a's image.
+LoopVerifier::Spread LoopVerifier::spread(const LoopView& a,
+                                          const LoopView& b,
+                                          const Eigen::Isometry3d& T_a_b,
+                                          std::span<const Match> matches) const {
+  Matrix6d H = Matrix6d::Zero();
+  for (const auto& [in_a, in_b] : matches) {
+    const Eigen::Vector3d p_a = T_a_b * *b.p_camera[in_b];
+    const PointMeasurement m = measure_(*a.features, in_a);
+    const Eigen::Matrix<double, 3, 6> J =
+        pose_jacobian(reprojection_jacobian(camera_, m, p_a), p_a);
+    H.noalias() += J.transpose() * J;
+  }
+  const Eigen::LDLT<Matrix6d> factors(H);
+  if (factors.info() != Eigen::Success || factors.rcond() < 1e-12) return {};
+  const Matrix6d covariance = factors.solve(Matrix6d::Identity());
+  return {std::sqrt(covariance.topLeftCorner<3, 3>().trace()),
+          std::sqrt(covariance.bottomRightCorner<3, 3>().trace())};
 }
 
 // Where a should see b's points; the descriptor is null for those that it should not see.
@@ -183,6 +209,10 @@ std::optional<VerifiedLoop> LoopVerifier::verify(FrameId frame,
   }
   if (loop.matches.size() < static_cast<std::size_t>(config_.min_inliers)) return std::nullopt;
   if (loop.share() < config_.min_share) return std::nullopt;
+  const Spread known = spread(a, b, loop.T_a_b, loop.matches);
+  loop.sigma_m = known.sigma_m;
+  loop.sigma_rad = known.sigma_rad;
+  if (!(loop.sigma_m <= config_.max_sigma_m)) return std::nullopt;
   return loop;
 }
 

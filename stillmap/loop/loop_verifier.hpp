@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <span>
 #include <utility>
@@ -17,7 +18,8 @@ struct LoopVerifierConfig {
   int iterations = 500;
   int min_matches = 15;
   int min_inliers = 40;
-  double min_share = 0.2;
+  double min_share = 0.25;
+  double max_sigma_m = 0.1;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -29,6 +31,9 @@ struct LoopVerifierConfig {
     visit("min_share",
           self.min_share,
           FieldInfo{"of what one image should see of the other's points, found there", "", 0, 1});
+    visit("max_sigma_m",
+          self.max_sigma_m,
+          FieldInfo{"error of the position that the matches leave, at most", "m", 0, 10});
   }
 };
 
@@ -37,7 +42,9 @@ struct VerifiedLoop {
   Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();
   /// (feature of a, feature of b) that see one point: their points agree with both images.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> matches;
-  int expected = 0;  ///< points of b that a should see
+  int expected = 0;      ///< points of b that a should see
+  double sigma_m = 0;    ///< how well the matches fix T_a_b: its position,
+  double sigma_rad = 0;  ///< and its rotation
 
   /// Of what should be seen.
   [[nodiscard]] double share() const {
@@ -54,6 +61,8 @@ struct VerifiedLoop {
 /// desks of one make have a desk in common but not what stands round it.
 class LoopVerifier {
  public:
+  /// `measure` should trust depths as far as the sensor earns it, with an inverse depth sigma of
+  /// about 0.01: before a wall, pixels alone hardly tell a step aside from a turn.
   LoopVerifier(const LoopVerifierConfig& config,
                const CameraModel& camera,
                MeasurementModel measure,
@@ -67,6 +76,10 @@ class LoopVerifier {
 
  private:
   using Match = std::pair<std::uint32_t, std::uint32_t>;
+  struct Spread {
+    double sigma_m = std::numeric_limits<double>::infinity();
+    double sigma_rad = std::numeric_limits<double>::infinity();
+  };
 
   [[nodiscard]] std::vector<Match> match(const LoopView& a, const LoopView& b) const;
   [[nodiscard]] bool agrees(const LoopView& a,
@@ -85,6 +98,10 @@ class LoopVerifier {
                                          const LoopView& b,
                                          const Eigen::Isometry3d& T_a_b,
                                          std::span<const Match> matches) const;
+  [[nodiscard]] Spread spread(const LoopView& a,
+                              const LoopView& b,
+                              const Eigen::Isometry3d& T_a_b,
+                              std::span<const Match> matches) const;
   [[nodiscard]] std::vector<Projection> project(const LoopView& b,
                                                 const Eigen::Isometry3d& T_a_b) const;
 

@@ -14,8 +14,8 @@ namespace stillmap {
 /// How descriptors are looked up. A key is a run of bits of the descriptor.
 struct PlaceOptions {
   int keys = 8;           ///< of each descriptor, 1 to 256 / key_bits
-  int key_bits = 20;      ///< 8 to 32
-  int max_distance = 40;  ///< Hamming; farther descriptors are of different corners
+  int key_bits = 16;      ///< 8 to 32
+  int max_distance = 30;  ///< Hamming; farther descriptors are of different corners
   int max_alike = 1;      ///< a key that more features of one image share is left out
 };
 

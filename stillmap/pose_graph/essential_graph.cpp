@@ -10,9 +10,15 @@
 namespace stillmap {
 namespace {
 
-// Of an edge that 100 matches prove; others in proportion to the square root.
+// Of an edge of 100 shared landmarks; others in proportion to the square root.
 constexpr double kSigma_m = 0.01;
 constexpr double kSigma_rad = 0.005;
+
+// Errors of a loop that its matches have in common do not show in its sigmas. Measured on pairs of
+// views with true poses: half of the errors are within 1 sigma, 95 % within some 6.
+constexpr double kLoopFactor = 3.0;
+constexpr double kMinLoopSigma_m = 0.005;
+constexpr double kMinLoopSigma_rad = 0.002;
 
 struct Pair {
   std::uint32_t from;
@@ -20,12 +26,12 @@ struct Pair {
   int shared;
 };
 
-PoseGraphEdge edge_of(std::uint32_t from,
-                      std::uint32_t to,
-                      const Eigen::Isometry3d& T_from_to,
-                      int matches) {
-  const double factor = std::sqrt(100.0 / std::max(matches, 1));
-  return {from, to, T_from_to, factor * kSigma_m, factor * kSigma_rad};
+PoseGraphEdge loop_edge(std::uint32_t from, std::uint32_t to, const LoopEdge& loop) {
+  return {from,
+          to,
+          loop.T_a_b,
+          std::max(kLoopFactor * loop.sigma_m, kMinLoopSigma_m),
+          std::max(kLoopFactor * loop.sigma_rad, kMinLoopSigma_rad)};
 }
 
 // Sets of what hangs together.
@@ -82,7 +88,12 @@ EssentialGraph essential_graph(const Map& map,
     graph.held.push_back(graph.held.empty() ? 1 : 0);
   }
   const auto now = [&](const Pair& p) {
-    return edge_of(p.from, p.to, graph.T_world[p.from].inverse() * graph.T_world[p.to], p.shared);
+    const double factor = std::sqrt(100.0 / p.shared);
+    return PoseGraphEdge{p.from,
+                         p.to,
+                         graph.T_world[p.from].inverse() * graph.T_world[p.to],
+                         factor * kSigma_m,
+                         factor * kSigma_rad};
   };
   Forest forest(graph.T_world.size());
   for (const Pair& pair : sharing_pairs(map, essential.keyframes)) {
@@ -95,10 +106,8 @@ EssentialGraph essential_graph(const Map& map,
   for (const LoopEdge& loop : loops) {
     if (!map.has(loop.a) || !map.has(loop.b)) continue;
     essential.loop_edges.push_back(static_cast<std::uint32_t>(graph.edges.size()));
-    graph.edges.push_back(edge_of(place_of(essential.keyframes, loop.a),
-                                  place_of(essential.keyframes, loop.b),
-                                  loop.T_a_b,
-                                  loop.matches));
+    graph.edges.push_back(loop_edge(
+        place_of(essential.keyframes, loop.a), place_of(essential.keyframes, loop.b), loop));
   }
   return essential;
 }

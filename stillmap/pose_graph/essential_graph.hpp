@@ -15,7 +15,8 @@ struct LoopEdge {
   KeyframeId a;
   KeyframeId b;
   Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();
-  int matches = 0;  ///< that prove it
+  double sigma_m = 0.005;  ///< as its matches fix it; more is assumed, for they agree too well
+  double sigma_rad = 0.002;
 };
 
 struct EssentialGraphConfig {

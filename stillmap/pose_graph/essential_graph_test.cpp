@@ -109,7 +109,8 @@ TEST(EssentialGraph, KeyframesThatShareNothingFollowTheOneBefore) {
   }
   map.remove_keyframe(KeyframeId(1), KeyframeId(0));
   const std::vector<LoopEdge> loops = {
-      {KeyframeId(0), KeyframeId(3), {}, 100}, {KeyframeId(1), KeyframeId(3), {}, 100},  // gone
+      {KeyframeId(0), KeyframeId(3), Eigen::Isometry3d::Identity(), 0.001, 0.01},
+      {KeyframeId(1), KeyframeId(3)},  // gone
   };
   const EssentialGraph essential = essential_graph(map, loops, {});
   ASSERT_EQ(essential.graph.edges.size(), 3U);
@@ -117,6 +118,8 @@ TEST(EssentialGraph, KeyframesThatShareNothingFollowTheOneBefore) {
   EXPECT_EQ(essential.graph.edges[1].to, 2U);
   EXPECT_EQ(essential.graph.edges[2].from, 0U);
   EXPECT_EQ(essential.loop_edges, std::vector<std::uint32_t>{2});
+  EXPECT_EQ(essential.graph.edges[2].sigma_m, 0.005);  // at least
+  EXPECT_EQ(essential.graph.edges[2].sigma_rad, 0.03);
   EXPECT_EQ(essential.graph.held, (std::vector<std::uint8_t>{1, 0, 0}));
 }
 
@@ -127,7 +130,7 @@ TEST(EssentialGraph, ALoopBringsADriftedMapBack) {
   const std::vector<Eigen::Isometry3d> truth = round_poses();
   const double before = worst_position(map);
   const LoopEdge loop{
-      KeyframeId(0), KeyframeId(kCount - 1), truth[0].inverse() * truth[kCount - 1], 200};
+      KeyframeId(0), KeyframeId(kCount - 1), truth[0].inverse() * truth[kCount - 1]};
   const EssentialGraph essential = essential_graph(map, std::span(&loop, 1), {});
   const PoseGraphResult result = optimize_pose_graph(essential.graph, {});
   std::map<KeyframeId, Eigen::Isometry3d> moved;
