@@ -18,7 +18,7 @@ struct LoopVerifierConfig {
   int iterations = 500;
   int min_matches = 15;
   int min_inliers = 40;
-  double min_share = 0.25;
+  double min_share = 0.2;
   double max_sigma_m = 0.1;
 
   template <class Self, class Visitor>

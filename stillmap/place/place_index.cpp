@@ -133,18 +133,26 @@ std::vector<double> PlaceIndex::votes(std::span<const Descriptor> descriptors,
   std::vector<double> result(places_.size(), 0.0);
   std::vector<std::size_t> voted(places_.size(), descriptors.size());  // by which feature last
   std::vector<std::uint32_t> found;
+  std::vector<Entry> sharing;
   for (std::size_t i = 0; i < descriptors.size(); ++i) {
-    found.clear();
+    // First all entries, then their descriptors, so that the memory is asked for many at once.
+    sharing.clear();
     for (std::size_t table = 0; table < count; ++table) {
       if (keys.distinctive[i * count + table] == 0) continue;
       const std::uint32_t key = keys.keys[i * count + table];
       for (const Entry& entry : buckets_[bucket(table, key)]) {
-        if (entry.key != key || voted[entry.slot] == i || counted[entry.slot] == 0) continue;
-        const Descriptor& other = places_[entry.slot].descriptors[entry.feature];
-        if (hamming_distance(descriptors[i], other) > options_.max_distance) continue;
-        voted[entry.slot] = i;
-        found.push_back(entry.slot);
+        if (entry.key != key || counted[entry.slot] == 0) continue;
+        __builtin_prefetch(&places_[entry.slot].descriptors[entry.feature]);
+        sharing.push_back(entry);
       }
+    }
+    found.clear();
+    for (const Entry& entry : sharing) {
+      if (voted[entry.slot] == i) continue;
+      const Descriptor& other = places_[entry.slot].descriptors[entry.feature];
+      if (hamming_distance(descriptors[i], other) > options_.max_distance) continue;
+      voted[entry.slot] = i;
+      found.push_back(entry.slot);
     }
     if (found.empty()) continue;
     const double rarity = 1.0 - std::log(static_cast<double>(found.size())) / std::log(places + 1);
