@@ -14,12 +14,10 @@ pkg_check_modules(LIBZIP REQUIRED IMPORTED_TARGET libzip)
 find_package(embree 3.13 REQUIRED)
 find_package(tinyobjloader REQUIRED)
 find_package(octomap 1.9 REQUIRED)
+find_package(Ceres 2.1 REQUIRED) # of pose_graph, and the independent reference of the bundle adjuster
 include(onnxruntime)
 if(STILLMAP_BUILD_TESTS)
   find_package(GTest 1.12 REQUIRED)
-endif()
-if(STILLMAP_BUILD_TESTS OR STILLMAP_BUILD_BENCHMARKS)
-  find_package(Ceres 2.1 REQUIRED) # the independent reference of the bundle adjuster
 endif()
 if(STILLMAP_BUILD_BENCHMARKS)
   find_package(benchmark REQUIRED)

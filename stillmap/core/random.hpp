@@ -13,6 +13,7 @@ namespace stillmap {
 enum class RandomPurpose : std::uint32_t {
   kAbsolutePose = 1,
   kEpipolarGeometry = 2,
+  kLoop = 3,
   kFloorPlane = 4
 };
 

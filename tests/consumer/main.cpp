@@ -6,6 +6,7 @@
 #include "stillmap/config/config_io.hpp"
 #include "stillmap/core/camera.hpp"
 #include "stillmap/core/error.hpp"
+#include "stillmap/pose_graph/pose_graph.hpp"
 #include "stillmap/system/system.hpp"
 
 namespace {
@@ -26,6 +27,7 @@ int main() {
   fmt::print("camera {}: {} x {}\n", camera.name, camera.width_px, camera.height_px);
   stillmap::System slam({}, camera, 2);
   if (!slam.finish().trajectory.empty()) return 1;
+  if (!stillmap::optimize_pose_graph({}, {}).T_world.empty()) return 1;
   Settings settings;
   fmt::print("{}", stillmap::dump_yaml(stillmap::list_fields(settings)));
   try {

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "stillmap/features/descriptor.hpp"
+#include "stillmap/place/place_index.hpp"
+
+namespace stillmap {
+
+/// A way to find places, to be compared with others: places are numbered as they were added.
+class PlaceDesign {
+ public:
+  PlaceDesign() = default;
+  PlaceDesign(const PlaceDesign&) = delete;
+  PlaceDesign& operator=(const PlaceDesign&) = delete;
+  virtual ~PlaceDesign() = default;
+  virtual void add(std::span<const Descriptor> descriptors) = 0;
+  /// How much every place added so far looks like this one; more is more alike.
+  [[nodiscard]] virtual std::vector<double> scores(
+      std::span<const Descriptor> descriptors) const = 0;
+};
+
+struct NamedDesign {
+  std::string name;
+  std::function<std::unique_ptr<PlaceDesign>()> make;
+};
+
+/// (a) Bags of words that are bits of the descriptor: `tables` words of `bits` bits each.
+[[nodiscard]] std::unique_ptr<PlaceDesign> hash_words(int tables, int bits);
+
+/// (b) Bags of words of a tree of `branching`^3 words, made of `training` descriptors.
+struct VocabularyTree;
+[[nodiscard]] std::shared_ptr<const VocabularyTree> train_vocabulary(
+    std::vector<Descriptor> training, std::size_t branching);
+[[nodiscard]] std::unique_ptr<PlaceDesign> vocabulary_words(
+    std::shared_ptr<const VocabularyTree> tree);
+
+/// (c) Descriptors vote for their like: stillmap::PlaceIndex.
+[[nodiscard]] std::unique_ptr<PlaceDesign> place_index(const PlaceOptions& options);
+
+}  // namespace stillmap
