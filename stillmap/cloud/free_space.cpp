@@ -130,7 +130,7 @@ class RangeCheck {
         height_(static_cast<float>(camera.height_px)),
         margin_(static_cast<float>(config.margin_m)),
         growth_(static_cast<float>(config.margin_per_m)),
-        beside_px_(static_cast<float>(config.beside_px)),
+        beside_px_(static_cast<float>(config.beside_share * camera.width_px)),
         beside_m_(static_cast<float>(config.beside_m)) {
     STILLMAP_CHECK(range.columns * range.block_px >= camera.width_px);
     STILLMAP_CHECK(range.rows * range.block_px >= camera.height_px);

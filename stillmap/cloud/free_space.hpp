@@ -22,9 +22,9 @@ struct FreeSpaceConfig {
   int min_stay = 5;
   double max_through_share = 0.25;
   double max_moving_share = 2.0;
-  int weakly_seen = 3;
-  double beside_px = 40;
-  double beside_m = 0.2;
+  int weakly_seen = 4;
+  double beside_share = 0.125;
+  double beside_m = 0.3;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -65,7 +65,9 @@ struct FreeSpaceConfig {
                     "",
                     0,
                     255});
-    visit("beside_px", self.beside_px, FieldInfo{"beside: so near in the image", "px", 0, 1000});
+    visit("beside_share",
+          self.beside_share,
+          FieldInfo{"beside: so near in the image, as a share of its width", "", 0, 1});
     visit("beside_m", self.beside_m, FieldInfo{"and so near in depth", "m", 0, 10});
   }
 };

@@ -23,7 +23,7 @@ struct CloudConfig {
   double voxel_size_m = 0.01;
   StaticDepthConfig depth;
   LocalCloudConfig local;
-  int view_gap_frames = 8;
+  int view_gap_frames = 6;
   std::string free_space = "by_mode";
   RangeImageConfig range;
   FreeSpaceConfig free;
