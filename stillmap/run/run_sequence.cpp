@@ -172,7 +172,9 @@ SequenceRun run_sequence(const TumSequence& sequence,
     waiting.lap_ms();
   }
   for (FrameWithObjects& frame : objects.flush()) process(std::move(frame));
+  waiting.lap_ms();
   run.result = system.finish();
+  add_stage_time(report.stages, "finishing", waiting.lap_ms());
   if (with_objects) {
     run.objects_jsonl = objects_jsonl(log, run.result.trajectory);
     report.objects = summarize_objects(log);
