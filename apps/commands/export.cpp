@@ -139,8 +139,7 @@ Eigen::Isometry3d find_floor_frame(const FinishedRun& run) {
 }
 
 void transform(FinishedRun& run, const Eigen::Isometry3d& T) {
-  for (Eigen::Vector3f& p : run.map.positions) p = (T * p.cast<double>()).cast<float>();
-  for (Eigen::Vector3f& n : run.map.normals) n = (T.linear() * n.cast<double>()).cast<float>();
+  run.map = moved(std::move(run.map), T);
   for (Eigen::Isometry3d& pose : run.T_world_keyframe) pose = T * pose;
 }
 

@@ -120,7 +120,7 @@ void add_through(Sightings& s) {
   s.seen_last = 0;
 }
 
-/// Compares points with the range that one key frame has measured.
+/// Compares points with the range that one view has measured.
 class RangeCheck {
  public:
   RangeCheck(const RangeImage& range, const CameraModel& camera, const FreeSpaceConfig& config)
@@ -196,11 +196,11 @@ class RangeCheck {
   float scale_, width_, height_, margin_, growth_, beside_px_, beside_m_;
 };
 
-/// Calls `check(range check, where the points fall, their sightings)` for each key frame and batch.
+/// Calls `check(range check, where the points fall, their sightings)` for each view and batch.
 template <class Check>
 void for_each_batch(std::span<const Eigen::Vector3f> points,
                     std::span<Sightings> all,
-                    std::span<const PosedRange> keyframes,
+                    std::span<const PosedRange> ranges,
                     const CameraModel& camera,
                     const FreeSpaceConfig& config,
                     Check&& check) {
@@ -209,10 +209,10 @@ void for_each_batch(std::span<const Eigen::Vector3f> points,
     RangeCheck range;
   };
   std::vector<View> views;
-  for (const PosedRange& keyframe : keyframes) {
-    STILLMAP_CHECK(keyframe.range != nullptr);
-    views.push_back({Projector(camera, keyframe.T_world_keyframe.inverse()),
-                     RangeCheck(*keyframe.range, camera, config)});
+  for (const PosedRange& posed : ranges) {
+    STILLMAP_CHECK(posed.range != nullptr);
+    views.push_back({Projector(camera, posed.T_world_camera.inverse()),
+                     RangeCheck(*posed.range, camera, config)});
   }
   Projected projected{};
   for (std::size_t begin = 0; begin < points.size(); begin += kBatch) {
@@ -229,13 +229,13 @@ void for_each_batch(std::span<const Eigen::Vector3f> points,
 }  // namespace
 
 std::vector<Sightings> sightings(std::span<const Eigen::Vector3f> points,
-                                 std::span<const PosedRange> keyframes,
+                                 std::span<const PosedRange> ranges,
                                  const CameraModel& camera,
                                  const FreeSpaceConfig& config) {
   std::vector<Sightings> all(points.size());
   for_each_batch(points,
                  all,
-                 keyframes,
+                 ranges,
                  camera,
                  config,
                  [](const RangeCheck& range, const Projected& at, std::span<Sightings> some) {
@@ -253,7 +253,7 @@ std::vector<Sightings> sightings(std::span<const Eigen::Vector3f> points,
   }
   for_each_batch(weak_points,
                  weak_sightings,
-                 keyframes,
+                 ranges,
                  camera,
                  config,
                  [](const RangeCheck& range, const Projected& at, std::span<Sightings> some) {
@@ -273,11 +273,11 @@ bool stays(const Sightings& s, const FreeSpaceConfig& config) {
 }
 
 PointCloud without_moved(const PointCloud& map,
-                         std::span<const PosedRange> keyframes,
+                         std::span<const PosedRange> ranges,
                          const CameraModel& camera,
                          const FreeSpaceConfig& config) {
   const PointGroups groups = group_points(map.positions, config.cell_m);
-  const std::vector<Sightings> seen = sightings(groups.means, keyframes, camera, config);
+  const std::vector<Sightings> seen = sightings(groups.means, ranges, camera, config);
   PointCloud kept;
   for (std::size_t i = 0; i < map.size(); ++i) {
     if (!stays(seen[groups.group_of[i]], config)) continue;

@@ -40,14 +40,11 @@ struct FreeSpaceConfig {
           FieldInfo{"growth of that distance with depth squared", "1/m", 0, 1});
     visit("min_through",
           self.min_through,
-          FieldInfo{
-              "key frames that must see through a point, the last that tell of it", "", 1, 1000});
+          FieldInfo{"views that must see through a point, the last that tell of it", "", 1, 1000});
     visit("min_stay",
           self.min_stay,
-          FieldInfo{"a point that was seen through stays when so many later key frames see it",
-                    "",
-                    1,
-                    255});
+          FieldInfo{
+              "a point that was seen through stays when so many later views see it", "", 1, 255});
     visit("max_through_share",
           self.max_through_share,
           FieldInfo{
@@ -72,15 +69,15 @@ struct FreeSpaceConfig {
   }
 };
 
-/// What a key frame knows of the space before it.
+/// What a view knows of the space before it.
 struct PosedRange {
-  Eigen::Isometry3d T_world_keyframe;
+  Eigen::Isometry3d T_world_camera;
   const RangeImage* range;  ///< not null; not owned
 };
 
-/// What key frames, in the order of their time, tell of a point. Counts end at 255.
+/// What views, in the order of their time, tell of a point. Counts end at 255.
 struct Sightings {
-  std::uint8_t seen = 0;       ///< key frames that measure it
+  std::uint8_t seen = 0;       ///< views that measure it
   std::uint8_t moving = 0;     ///< that measure something at its place which moves
   std::uint8_t beside = 0;     ///< that measure it beside what moves; only for weakly seen points
   std::uint8_t through = 0;    ///< that see through it
@@ -88,10 +85,10 @@ struct Sightings {
   std::uint8_t through_last = 0;  ///< that see through it after the last that measures it
 };
 
-/// For each point (world), what the key frames tell of it. One that has the point out of view,
+/// For each point (world), what the views tell of it. One that has the point out of view,
 /// hidden, or where its range is not known, tells nothing.
 [[nodiscard]] std::vector<Sightings> sightings(std::span<const Eigen::Vector3f> points,
-                                               std::span<const PosedRange> keyframes,
+                                               std::span<const PosedRange> ranges,
                                                const CameraModel& camera,
                                                const FreeSpaceConfig& config);
 
@@ -101,7 +98,7 @@ struct Sightings {
 /// The points of a map that stay, by what the frames tell of them. Points of a cube of `cell_m`
 /// have one fate: that of their mean.
 [[nodiscard]] PointCloud without_moved(const PointCloud& map,
-                                       std::span<const PosedRange> keyframes,
+                                       std::span<const PosedRange> ranges,
                                        const CameraModel& camera,
                                        const FreeSpaceConfig& config);
 

@@ -13,6 +13,7 @@
 
 #include "stillmap/cloud/global_cloud.hpp"
 #include "stillmap/cloud/local_cloud.hpp"
+#include "stillmap/core/camera_test_support.hpp"
 #include "stillmap/core/error.hpp"
 #include "stillmap/core/se3.hpp"
 
@@ -20,13 +21,7 @@ namespace stillmap {
 namespace {
 
 CameraModel camera() {
-  CameraModel c;
-  c.width_px = 160;
-  c.height_px = 120;
-  c.fx = c.fy = 130;
-  c.cx = 79.5;
-  c.cy = 59.5;
-  return c;
+  return centered_camera(160, 120, 130);
 }
 
 /// A thing whose front, at depth z, fills these pixels of a camera at the origin.
@@ -142,7 +137,7 @@ Sightings brute_force_sightings(const Eigen::Vector3f& point,
   const FreeSpaceConfig config;
   Sightings s;
   for (const PosedRange& k : keyframes) {
-    const Eigen::Vector3d p = k.T_world_keyframe.inverse() * point.cast<double>();
+    const Eigen::Vector3d p = k.T_world_camera.inverse() * point.cast<double>();
     if (p.z() <= 0.05) continue;
     const Eigen::Vector2d px = c.distort(c.project(p));
     const int u = static_cast<int>(std::lround(px.x())), v = static_cast<int>(std::lround(px.y()));

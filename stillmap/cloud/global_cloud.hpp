@@ -9,9 +9,9 @@
 
 namespace stillmap {
 
-/// A key frame's cloud (see local_cloud) and where the key frame is.
+/// A view's cloud (see local_cloud) and where its camera is.
 struct PosedCloud {
-  Eigen::Isometry3d T_world_keyframe;
+  Eigen::Isometry3d T_world_camera;
   const PointCloud* cloud;  ///< not null; not owned
 };
 

@@ -16,13 +16,12 @@ struct LocalCloudConfig {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit(
-        "cells_across",
-        self.cells_across,
-        FieldInfo{"a key frame's points are means over square cells, so many in the image's width",
-                  "",
-                  1,
-                  10000});
+    visit("cells_across",
+          self.cells_across,
+          FieldInfo{"a view's points are means over square cells, so many in the image's width",
+                    "",
+                    1,
+                    10000});
     visit("join_per_m",
           self.join_per_m,
           FieldInfo{"and over depths within join_per_m (z + join_offset_m)^2", "1/m", 0, 1});
@@ -30,9 +29,9 @@ struct LocalCloudConfig {
   }
 };
 
-/// The surface that a key frame sees, as points in its own camera's coordinates (metres).
+/// The surface that a view sees, as points in its own camera's coordinates (metres).
 ///
-/// They stay in these coordinates for good: a later correction of the key frame's pose, by bundle
+/// They stay in these coordinates for good: a later correction of the view's pose, by bundle
 /// adjustment or a closed loop, then costs nothing, as the pose is applied when the map is
 /// assembled (global_cloud; Fan 2020, Eq. (1)).
 ///

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "stillmap/core/camera.hpp"
+#include "stillmap/core/camera_test_support.hpp"
 #include "stillmap/core/error.hpp"
 #include "stillmap/core/rgbd_frame.hpp"
 
@@ -18,13 +18,7 @@ namespace stillmap {
 namespace {
 
 CameraModel small_camera() {
-  CameraModel camera;
-  camera.width_px = 64;
-  camera.height_px = 48;
-  camera.fx = camera.fy = 50;
-  camera.cx = 31.5;
-  camera.cy = 23.5;
-  return camera;
+  return centered_camera(64, 48, 50);
 }
 
 /// All pixels with this depth, and with colours that name the pixel.

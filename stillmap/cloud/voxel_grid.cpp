@@ -142,4 +142,10 @@ PointCloud VoxelGrid::extract() const {
   return cloud;
 }
 
+std::vector<Eigen::Vector3f> thinned(std::span<const Eigen::Vector3f> points, double voxel_size_m) {
+  VoxelGrid grid(voxel_size_m);
+  for (const Eigen::Vector3f& p : points) grid.add(p, Rgb{});
+  return grid.extract().positions;
+}
+
 }  // namespace stillmap

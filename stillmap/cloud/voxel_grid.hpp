@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -66,5 +67,9 @@ class VoxelGrid {
   std::vector<std::uint32_t> table_;  ///< open addressing: index of a voxel, or kEmptySlot
   bool labelled_ = false;
 };
+
+/// The mean position of the points in each voxel, in VoxelGrid's order.
+[[nodiscard]] std::vector<Eigen::Vector3f> thinned(std::span<const Eigen::Vector3f> points,
+                                                   double voxel_size_m);
 
 }  // namespace stillmap

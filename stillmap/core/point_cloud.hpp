@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 namespace stillmap {
 
@@ -22,5 +23,13 @@ struct PointCloud {
   [[nodiscard]] std::size_t size() const { return positions.size(); }
   [[nodiscard]] bool empty() const { return positions.empty(); }
 };
+
+/// The cloud in other coordinates.
+[[nodiscard]] inline PointCloud moved(PointCloud cloud, const Eigen::Isometry3d& T_target_cloud) {
+  for (Eigen::Vector3f& p : cloud.positions) p = (T_target_cloud * p.cast<double>()).cast<float>();
+  const Eigen::Matrix3f R_target_cloud = T_target_cloud.linear().cast<float>();
+  for (Eigen::Vector3f& normal : cloud.normals) normal = R_target_cloud * normal;
+  return cloud;
+}
 
 }  // namespace stillmap

@@ -18,12 +18,6 @@ namespace {
 using Points = std::vector<Eigen::Vector3f>;
 using Cell = std::array<std::int32_t, 3>;
 
-Points thinned(const PointCloud& cloud) {
-  VoxelGrid grid(kMapVoxel_m);
-  for (const Eigen::Vector3f& p : cloud.positions) grid.add(p, {});
-  return grid.extract().positions;
-}
-
 std::vector<double> distances(const Points& from, const NearestPoints& to) {
   std::vector<double> result;
   result.reserve(from.size());
@@ -115,17 +109,10 @@ void check_extent(const PointCloud& cloud, const std::string& name) {
   }
 }
 
-PointCloud moved(PointCloud cloud, const Eigen::Isometry3d& T_target_cloud) {
-  for (Eigen::Vector3f& p : cloud.positions) p = (T_target_cloud * p.cast<double>()).cast<float>();
-  const Eigen::Matrix3f R_target_cloud = T_target_cloud.linear().cast<float>();
-  for (Eigen::Vector3f& normal : cloud.normals) normal = R_target_cloud * normal;
-  return cloud;
-}
-
 MapQuality map_quality(const PointCloud& map, const MapTruth& truth) {
   STILLMAP_CHECK(!truth.static_surface.empty());
-  const Points points = thinned(map);
-  const Points surface = thinned(truth.static_surface);
+  const Points points = thinned(map.positions, kMapVoxel_m);
+  const Points surface = thinned(truth.static_surface.positions, kMapVoxel_m);
   const NearestPoints nearest_map(points);
   const std::vector<double> to_map_m = distances(surface, nearest_map);
   const std::vector<double> to_static_m = distances(points, NearestPoints(surface));
@@ -140,7 +127,7 @@ MapQuality map_quality(const PointCloud& map, const MapTruth& truth) {
     quality.off_ratio_10cm = share_farther(to_static_m, 0.10);
   }
   if (!truth.dynamic) return quality;
-  const Points dynamic = thinned(*truth.dynamic);
+  const Points dynamic = thinned(truth.dynamic->positions, kMapVoxel_m);
   quality.ghosts = ghosts(points, to_static_m, dynamic);
   if (dynamic.empty()) return quality;
   quality.da = share_farther(distances(dynamic, nearest_map), kMapNear_m);

@@ -50,9 +50,6 @@ struct MapTruth {
 /// Throws Error, naming the cloud, when a point is not finite or beyond kMapExtent_m.
 void check_extent(const PointCloud& cloud, const std::string& name);
 
-/// The cloud in other coordinates.
-[[nodiscard]] PointCloud moved(PointCloud cloud, const Eigen::Isometry3d& T_target_cloud);
-
 /// Compares a map with the truth, in whose frame it is. Deterministic; seconds for clouds of some
 /// million points. All clouds pass check_extent().
 [[nodiscard]] MapQuality map_quality(const PointCloud& map, const MapTruth& truth);

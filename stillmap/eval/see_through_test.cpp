@@ -6,19 +6,14 @@
 
 #include <gtest/gtest.h>
 
+#include "stillmap/core/camera_test_support.hpp"
 #include "stillmap/core/se3.hpp"
 
 namespace stillmap {
 namespace {
 
 CameraModel small_camera() {
-  CameraModel camera;
-  camera.width_px = 64;
-  camera.height_px = 48;
-  camera.fx = camera.fy = 50;
-  camera.cx = 31.5;
-  camera.cy = 23.5;
-  return camera;
+  return centered_camera(64, 48, 50);
 }
 
 DepthImage wall_at(double z) {

@@ -150,17 +150,11 @@ std::size_t inner_cells(const FloorPlane& plane, const Surface& surface) {
   return static_cast<std::size_t>(std::ranges::count_if(cells, is_inner));
 }
 
-Points thinned(std::span<const Eigen::Vector3f> p_world) {
-  VoxelGrid grid(kThinnedM);
-  for (const Eigen::Vector3f& p : p_world) grid.add(p, Rgb{});
-  Points points;
-  for (const Eigen::Vector3f& p : grid.extract().positions) points.push_back(p.cast<double>());
-  return points;
-}
-
 Surface make_surface(std::span<const Eigen::Vector3f> p_world, const CameraEvidence& cameras) {
   Surface surface;
-  surface.all = thinned(p_world);
+  for (const Eigen::Vector3f& p : thinned(p_world, kThinnedM)) {
+    surface.all.push_back(p.cast<double>());
+  }
   std::map<std::array<int, 3>, Points> patches;
   for (const Eigen::Vector3d& p : surface.all) {
     const Eigen::Vector3i voxel = voxel_of(p, kPatchM);

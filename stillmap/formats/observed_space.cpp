@@ -32,15 +32,6 @@ void check_reach(const Eigen::Vector3d& p, double resolution_m) {
       resolution_m);
 }
 
-std::vector<Eigen::Vector3f> thinned(std::span<const Eigen::Vector3f> points, double resolution_m) {
-  VoxelGrid grid(resolution_m / 2);
-  for (const Eigen::Vector3f& p : points) {
-    check_reach(p.cast<double>(), resolution_m);
-    grid.add(p, Rgb{});
-  }
-  return grid.extract().positions;
-}
-
 class SpaceObserver {
  public:
   SpaceObserver(std::vector<Eigen::Vector3f> points, const SpaceOptions& options)
@@ -112,7 +103,8 @@ ObservedSpace observe_space(std::span<const Eigen::Vector3f> p_world,
                             const CameraModel& camera,
                             const SpaceOptions& options) {
   STILLMAP_CHECK(options.resolution_m > 0 && options.max_range_m > 0);
-  SpaceObserver observer(thinned(p_world, options.resolution_m), options);
+  for (const Eigen::Vector3f& p : p_world) check_reach(p.cast<double>(), options.resolution_m);
+  SpaceObserver observer(thinned(p_world, options.resolution_m / 2), options);
   for (const Eigen::Isometry3d& pose : T_world_camera) observer.add_view(pose, camera);
   return observer.take();
 }

@@ -52,9 +52,8 @@ PointCloud static_map(std::span<const PosedView> views,
   return without_moved(all, ranges, camera, config.free);
 }
 
-NotStatic not_static(const FrameDynamics& dynamics) {
-  const DynamicMask& mask = dynamics.judged.mask;
-  if (mask.extended.empty()) return {dynamics.excluded, {}};
+NotStatic not_static(const DynamicMask& mask, const cv::Mat1b& excluded) {
+  if (mask.extended.empty()) return {excluded, {}};
   const int side = std::max(1, mask.jumps.cols / kJumpsPerWidth);
   cv::Mat1b moving;
   cv::morphologyEx(mask.jumps,
@@ -62,7 +61,7 @@ NotStatic not_static(const FrameDynamics& dynamics) {
                    cv::MORPH_OPEN,
                    cv::getStructuringElement(cv::MORPH_RECT, cv::Size(side, side)));
   cv::bitwise_or(moving, mask.extended, moving);
-  return {dynamics.excluded, moving};
+  return {excluded, moving};
 }
 
 }  // namespace stillmap

@@ -18,7 +18,7 @@
 
 namespace stillmap {
 
-/// How the map's points are made of what the key frames see.
+/// How the map's points are made of what the views see: key frames and some frames between them.
 struct CloudConfig {
   double voxel_size_m = 0.01;
   StaticDepthConfig depth;
@@ -93,6 +93,6 @@ struct PosedView {
 /// What the dynamics stage says of a frame, for the cloud: excluded are all of its dynamic pixels
 /// and a margin; known to move are those of objects, and of depth jumps that cover a square with
 /// sides of 1/70 of the image's width, which noise does not.
-[[nodiscard]] NotStatic not_static(const FrameDynamics& dynamics);
+[[nodiscard]] NotStatic not_static(const DynamicMask& mask, const cv::Mat1b& excluded);
 
 }  // namespace stillmap

@@ -90,12 +90,12 @@ TEST(CloudStage, SmallJumpsAreUnclearLargeOnesMove) {
   dynamics.judged.mask.jumps(cv::Rect(100, 100, 8, 30)).setTo(1);
   dynamics.judged.mask.jumps(cv::Rect(200, 100, 9, 30)).setTo(1);
   dynamics.excluded = dynamics.judged.mask.jumps | dynamics.judged.mask.extended;
-  const NotStatic masks = not_static(dynamics);
+  const NotStatic masks = not_static(dynamics.judged.mask, dynamics.excluded);
   EXPECT_NE(masks.moving(12, 12), 0);
   EXPECT_EQ(masks.moving(110, 104), 0);
   EXPECT_NE(masks.moving(110, 204), 0);
   EXPECT_NE(masks.excluded(110, 104), 0);
-  EXPECT_TRUE(not_static({}).moving.empty());
+  EXPECT_TRUE(not_static({}, {}).moving.empty());
 }
 
 }  // namespace

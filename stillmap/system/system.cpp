@@ -67,7 +67,7 @@ FrameResult System::process(const FramePtr& frame, FrameObjects objects) {
   ++since_keyframe_.frames;
   if (tracked.status == TrackingStatus::kInitialized ||
       wants_keyframe(config_.keyframe, tracked, since_keyframe_)) {
-    tracked.reference = insert_keyframe(*frame, result);
+    tracked.reference = insert_keyframe(*frame, tracked);
     result.is_keyframe = true;
   }
   ++since_view_;
@@ -115,8 +115,7 @@ void System::count_landmarks(const TrackedFrame& tracked) {
   }
 }
 
-KeyframeId System::insert_keyframe(const RgbdFrame& frame, const FrameResult& result) {
-  const TrackedFrame& tracked = result.tracked;
+KeyframeId System::insert_keyframe(const RgbdFrame& frame, const TrackedFrame& tracked) {
   Keyframe keyframe;
   keyframe.frame = frame.id;
   keyframe.stamp = frame.stamp;
@@ -147,10 +146,12 @@ void System::add_view(const FramePtr& frame, const FrameDynamics& dynamics) {
   const std::size_t index = views_.size();
   views_.push_back({records_.size() - 1, nullptr});
   since_view_ = 0;
-  const NotStatic masks = not_static(dynamics);
+  const DynamicMask mask = dynamics.judged.mask;
+  const cv::Mat1b excluded = dynamics.excluded;
   const cv::Mat1b labels = label_image(frame->depth, dynamics);
   view_jobs_.submit(
-      frame_number_ + config_.mapping.lag_frames, [frame, masks, labels, index, this] {
+      frame_number_ + config_.mapping.lag_frames, [frame, mask, excluded, labels, index, this] {
+        const NotStatic masks = not_static(mask, excluded);
         return FinishedView(index,
                             std::make_shared<const StaticView>(
                                 static_view(*frame, rays_, cloud_config_, masks, labels)));

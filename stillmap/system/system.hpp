@@ -66,7 +66,7 @@ class System {
   using FinishedView = std::pair<std::size_t, std::shared_ptr<const StaticView>>;
 
   [[nodiscard]] TrackedFrame track(const RgbdFrame& frame, Features features);
-  [[nodiscard]] KeyframeId insert_keyframe(const RgbdFrame& frame, const FrameResult& result);
+  [[nodiscard]] KeyframeId insert_keyframe(const RgbdFrame& frame, const TrackedFrame& tracked);
   void add_view(const FramePtr& frame, const FrameDynamics& dynamics);
   [[nodiscard]] Eigen::Isometry3d T_world_frame(const FrameRecord& record) const;
   void count_landmarks(const TrackedFrame& tracked);
