@@ -183,4 +183,10 @@ std::vector<PlaceCandidate> PlaceIndex::query(std::span<const Descriptor> descri
   return candidates;
 }
 
+PlaceIndex index_of(const Map& map) {
+  PlaceIndex index;
+  for (const auto& [id, keyframe] : map.keyframes()) index.add(id, keyframe.features->descriptors);
+  return index;
+}
+
 }  // namespace stillmap

@@ -8,6 +8,7 @@
 
 #include "stillmap/core/ids.hpp"
 #include "stillmap/features/descriptor.hpp"
+#include "stillmap/map/map.hpp"
 
 namespace stillmap {
 
@@ -82,5 +83,8 @@ class PlaceIndex {
   std::map<KeyframeId, std::uint32_t> slots_;
   std::vector<std::uint32_t> free_slots_;
 };
+
+/// An index of all key frames of a map.
+[[nodiscard]] PlaceIndex index_of(const Map& map);
 
 }  // namespace stillmap

@@ -38,7 +38,7 @@ System::System(const SystemConfig& config, const CameraModel& camera, int thread
 FrameResult System::process(const FramePtr& frame, FrameObjects objects) {
   Stopwatch total, stage;
   FrameResult result;
-  for (const MapUpdate& update : mapping_jobs_.collect_due(frame_number_)) map_.apply(update);
+  for (const MapUpdate& update : mapping_jobs_.collect_due(frame_number_)) apply(update);
   collect_views(frame_number_);
   result.stages.push_back({"mapping", stage.lap_ms()});
 
@@ -102,7 +102,7 @@ TrackedFrame System::track(const RgbdFrame& frame, Features features) {
     lost.features = std::make_shared<const Features>(std::move(features));
     return lost;
   }
-  TrackedFrame tracked = tracker_.track(frame, std::move(features), map_);
+  TrackedFrame tracked = tracker_.track(frame, std::move(features), map_, places_);
   count_landmarks(tracked);
   return tracked;
 }
@@ -122,6 +122,7 @@ KeyframeId System::insert_keyframe(const RgbdFrame& frame, const TrackedFrame& t
   keyframe.T_world_camera = tracked.T_world_camera;
   keyframe.features = tracked.features;
   const KeyframeId id = map_.add_keyframe(std::move(keyframe));
+  places_.add(id, tracked.features->descriptors);
   for (std::uint32_t i = 0; i < tracked.landmarks.size(); ++i) {
     if (!tracked.landmarks[i].valid()) continue;
     map_.add_observation(tracked.landmarks[i], {id, i});
@@ -139,6 +140,11 @@ KeyframeId System::insert_keyframe(const RgbdFrame& frame, const TrackedFrame& t
         return map_locally(std::move(*window), core, camera_, measure_, config_.mapping);
       });
   return id;
+}
+
+void System::apply(const MapUpdate& update) {
+  map_.apply(update);
+  for (const auto& [dropped, anchor] : update.dropped_keyframes) places_.remove(dropped);
 }
 
 // The last frame that was recorded.
@@ -171,7 +177,7 @@ void System::record(const RgbdFrame& frame,
 }
 
 RunResult System::finish() {
-  for (const MapUpdate& update : mapping_jobs_.collect_due(kAll)) map_.apply(update);
+  for (const MapUpdate& update : mapping_jobs_.collect_due(kAll)) apply(update);
   collect_views(kAll);
 
   RunResult result;

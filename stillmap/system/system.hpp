@@ -8,6 +8,7 @@
 #include "stillmap/core/rgbd_frame.hpp"
 #include "stillmap/core/trajectory.hpp"
 #include "stillmap/map/map.hpp"
+#include "stillmap/place/place_index.hpp"
 #include "stillmap/system/cloud_stage.hpp"
 #include "stillmap/system/config.hpp"
 #include "stillmap/system/dynamics_stage.hpp"
@@ -67,6 +68,7 @@ class System {
 
   [[nodiscard]] TrackedFrame track(const RgbdFrame& frame, Features features);
   [[nodiscard]] KeyframeId insert_keyframe(const RgbdFrame& frame, const TrackedFrame& tracked);
+  void apply(const MapUpdate& update);
   void add_view(const FramePtr& frame, const FrameDynamics& dynamics);
   [[nodiscard]] Eigen::Isometry3d T_world_frame(const FrameRecord& record) const;
   void count_landmarks(const TrackedFrame& tracked);
@@ -84,6 +86,7 @@ class System {
   OrbExtractor extractor_;
   MeasurementModel measure_;
   Map map_;
+  PlaceIndex places_;  // of its key frames
   Tracker tracker_;
 
   std::int64_t frame_number_ = 0;  // of those processed

@@ -18,27 +18,6 @@ Relocalizer::Relocalizer(const RelocalizerConfig& config,
                          std::uint32_t seed)
     : config_(config), camera_(camera), measure_(std::move(measure)), seed_(seed) {}
 
-std::vector<KeyframeId> Relocalizer::candidates(FrameId frame,
-                                                const Map& map,
-                                                KeyframeId last_reference) const {
-  const auto count = static_cast<std::size_t>(config_.candidates);
-  const KeyframeId nearest = map.anchor(last_reference).keyframe;
-  std::vector<KeyframeId> chosen = {nearest};
-  for (const CovisibleKeyframe& other : covisible_keyframes(map, nearest)) {
-    if (chosen.size() > count / 2) break;
-    chosen.push_back(other.id);
-  }
-  std::vector<KeyframeId> others;
-  for (const auto& [id, keyframe] : map.keyframes()) {
-    if (std::ranges::find(chosen, id) == chosen.end()) others.push_back(id);
-  }
-  const std::size_t wanted = std::min(count - std::min(count, chosen.size()), others.size());
-  for (std::size_t i = 0; i < wanted; ++i) {
-    chosen.push_back(others[(frame.index() * wanted + i) % others.size()]);
-  }
-  return chosen;
-}
-
 std::vector<Relocalizer::Correspondence> Relocalizer::match(const Features& features,
                                                             const Keyframe& keyframe,
                                                             const Map& map) const {
@@ -97,9 +76,11 @@ std::optional<Eigen::Isometry3d> Relocalizer::sample_pose(
 std::optional<Relocalization> Relocalizer::find(FrameId frame,
                                                 const Features& features,
                                                 const Map& map,
-                                                KeyframeId last_reference) const {
-  for (const KeyframeId candidate : candidates(frame, map, last_reference)) {
-    const std::vector<Correspondence> matches = match(features, map.keyframe(candidate), map);
+                                                const PlaceIndex& places) const {
+  const auto count = static_cast<std::size_t>(config_.candidates);
+  for (const PlaceCandidate& candidate : places.query(features.descriptors, count)) {
+    const std::vector<Correspondence> matches =
+        match(features, map.keyframe(candidate.keyframe), map);
     if (matches.size() < static_cast<std::size_t>(config_.min_inliers)) continue;
     const std::optional<Eigen::Isometry3d> sampled = sample_pose(frame, matches);
     if (!sampled) continue;

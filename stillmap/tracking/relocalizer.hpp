@@ -8,11 +8,12 @@
 #include "stillmap/core/fields.hpp"
 #include "stillmap/map/map.hpp"
 #include "stillmap/optim/measurement_model.hpp"
+#include "stillmap/place/place_index.hpp"
 
 namespace stillmap {
 
 struct RelocalizerConfig {
-  int candidates = 8;
+  int candidates = 5;
   int iterations = 200;
   int min_inliers = 25;
 
@@ -20,7 +21,7 @@ struct RelocalizerConfig {
   static void fields(Self& self, Visitor& visit) {
     visit("candidates",
           self.candidates,
-          FieldInfo{"key frames tried in a frame while lost", "", 3, 1000});
+          FieldInfo{"key frames tried in a frame while lost", "", 1, 1000});
     visit("iterations", self.iterations, FieldInfo{"of RANSAC, per key frame", "", 1, 100000});
     visit("min_inliers", self.min_inliers, FieldInfo{"that prove a place", "", 4, 1000});
   }
@@ -39,12 +40,12 @@ class Relocalizer {
               MeasurementModel measure,
               std::uint32_t seed);
 
-  /// Tries the key frames that are covisible with `last_reference`, and a further few of the whole
-  /// map by turns, so that over some frames all are tried. Nothing when none fits.
+  /// Tries the key frames that look most like the frame, best first. Nothing when none fits.
+  /// `places` holds key frames of the map.
   [[nodiscard]] std::optional<Relocalization> find(FrameId frame,
                                                    const Features& features,
                                                    const Map& map,
-                                                   KeyframeId last_reference) const;
+                                                   const PlaceIndex& places) const;
 
  private:
   struct Correspondence {
@@ -55,9 +56,6 @@ class Relocalizer {
     bool has_depth;
   };
 
-  [[nodiscard]] std::vector<KeyframeId> candidates(FrameId frame,
-                                                   const Map& map,
-                                                   KeyframeId last_reference) const;
   [[nodiscard]] std::vector<Correspondence> match(const Features& features,
                                                   const Keyframe& keyframe,
                                                   const Map& map) const;

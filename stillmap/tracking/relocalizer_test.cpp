@@ -46,7 +46,8 @@ TEST(Relocalizer, FindsThePoseAmongKeyframes) {
     const Observed seen = world.observe(truth, kNoise, rng);
     std::optional<Relocalization> found;
     for (std::uint32_t frame = 0; frame < 4 && !found; ++frame) {
-      found = relocalizer.find(FrameId(frame), seen.features, simulated.map, KeyframeId(0));
+      found =
+          relocalizer.find(FrameId(frame), seen.features, simulated.map, index_of(simulated.map));
     }
     ASSERT_TRUE(found) << degrees;
     EXPECT_LT((found->T_camera_world.inverse().translation() - truth.translation()).norm(), 0.03);
@@ -68,8 +69,8 @@ TEST(Relocalizer, FindsItAmongManyWrongMatches) {
     std::swap(seen.features.descriptors[i], seen.features.descriptors[i - 2]);
     seen.features.angle_deg[i] = seen.features.angle_deg[i - 2];
   }
-  const std::optional<Relocalization> found =
-      make_relocalizer(world).find(FrameId(0), seen.features, simulated.map, KeyframeId(0));
+  const std::optional<Relocalization> found = make_relocalizer(world).find(
+      FrameId(0), seen.features, simulated.map, index_of(simulated.map));
   ASSERT_TRUE(found);
   EXPECT_LT((found->T_camera_world * yawed(10)).translation().norm(), 0.01);
 }
@@ -82,7 +83,8 @@ TEST(Relocalizer, DoesNotFindAnUnknownPlace) {
   const Observed seen = elsewhere.observe(yawed(0), kNoise, rng);
   const Relocalizer relocalizer = make_relocalizer(world);
   for (std::uint32_t frame = 0; frame < 4; ++frame) {
-    EXPECT_FALSE(relocalizer.find(FrameId(frame), seen.features, simulated.map, KeyframeId(0)));
+    EXPECT_FALSE(
+        relocalizer.find(FrameId(frame), seen.features, simulated.map, index_of(simulated.map)));
   }
 }
 
@@ -93,8 +95,8 @@ TEST(Relocalizer, DoesNotFindKnownCornersInAnotherArrangement) {
   Observed seen = world.observe(yawed(0), kNoise, rng);
   std::ranges::shuffle(seen.features.px, rng);
   std::ranges::shuffle(seen.features.depth_m, rng);
-  EXPECT_FALSE(
-      make_relocalizer(world).find(FrameId(0), seen.features, simulated.map, KeyframeId(0)));
+  EXPECT_FALSE(make_relocalizer(world).find(
+      FrameId(0), seen.features, simulated.map, index_of(simulated.map)));
 }
 
 TEST(Relocalizer, IsTheSameBitsForASeed) {
@@ -104,7 +106,7 @@ TEST(Relocalizer, IsTheSameBitsForASeed) {
   const Observed seen = world.observe(yawed(10), kNoise, rng);
   const auto find = [&](std::uint32_t seed) {
     return make_relocalizer(world, {.iterations = 5}, seed)
-        .find(FrameId(3), seen.features, simulated.map, KeyframeId(0));
+        .find(FrameId(3), seen.features, simulated.map, index_of(simulated.map));
   };
   const std::optional<Relocalization> first = find(7), second = find(7);
   ASSERT_TRUE(first && second);
@@ -117,16 +119,6 @@ TEST(Relocalizer, IsTheSameBitsForASeed) {
         seed_matters || !other || other->T_camera_world.matrix() != first->T_camera_world.matrix();
   }
   EXPECT_TRUE(seed_matters);
-}
-
-TEST(Relocalizer, BeginsAtTheAnchorOfADroppedReference) {
-  const SimulatedWorld world({}, simulated_camera());
-  SimulatedMap simulated = map_all_round(world);
-  simulated.map.remove_keyframe(KeyframeId(5), KeyframeId(6));
-  std::mt19937 rng(5);
-  const Observed seen = world.observe(yawed(175), kNoise, rng);
-  const Relocalizer relocalizer = make_relocalizer(world, {.candidates = 3});
-  EXPECT_TRUE(relocalizer.find(FrameId(0), seen.features, simulated.map, KeyframeId(5)));
 }
 
 // Places that share nothing: key frame k stands at the origin of a world of its own.
@@ -152,25 +144,14 @@ Places separate_places(std::uint32_t count) {
   return places;
 }
 
-TEST(Relocalizer, TriesEveryKeyframeOverSomeFrames) {
+TEST(Relocalizer, TriesTheKeyframesThatLookMostLikeIt) {
   const Places places = separate_places(20);
+  const PlaceIndex index = index_of(places.map.map);
   std::mt19937 rng(7);
-  for (const int candidates : {3, 8}) {
-    const Relocalizer relocalizer = make_relocalizer(places.worlds[0], {.candidates = candidates});
-    // One is the last reference's; the other candidates take turns among 19.
-    const std::uint32_t frames = 19 / static_cast<std::uint32_t>(candidates - 1) + 1;
-    for (std::size_t k = 0; k < places.worlds.size(); ++k) {
-      const Observed seen = places.worlds[k].observe(yawed(3), kNoise, rng);
-      int found = 0;
-      for (std::uint32_t frame = 40; frame < 40 + frames; ++frame) {
-        found +=
-            relocalizer.find(FrameId(frame), seen.features, places.map.map, KeyframeId(0)) ? 1 : 0;
-      }
-      EXPECT_GE(found, 1) << "key frame " << k << ", candidates " << candidates;
-      if (k > 0) {
-        EXPECT_LE(found, 2) << "key frame " << k;
-      }
-    }
+  const Relocalizer relocalizer = make_relocalizer(places.worlds[0], {.candidates = 1});
+  for (std::size_t k = 0; k < places.worlds.size(); ++k) {
+    const Observed seen = places.worlds[k].observe(yawed(3), kNoise, rng);
+    EXPECT_TRUE(relocalizer.find(FrameId(0), seen.features, places.map.map, index)) << k;
   }
 }
 

@@ -40,7 +40,10 @@ TrackedFrame Tracker::start(const RgbdFrame& frame, Features features) {
   return tracked;
 }
 
-TrackedFrame Tracker::track(const RgbdFrame& frame, Features features, const Map& map) {
+TrackedFrame Tracker::track(const RgbdFrame& frame,
+                            Features features,
+                            const Map& map,
+                            const PlaceIndex& places) {
   TrackedFrame tracked;
   tracked.id = frame.id;
   tracked.stamp_s = frame.stamp.seconds;
@@ -50,7 +53,7 @@ TrackedFrame Tracker::track(const RgbdFrame& frame, Features features, const Map
   const double since_last_s = tracked.stamp_s - last_->stamp_s;
   const CameraVelocity expected = mean_velocity(motion_.predict(since_last_s), since_last_s);
   features = undo_rolling_shutter(std::move(features), camera_, readout_s(), expected);
-  std::optional<PoseFromMatches> pose = find_pose(tracked, features, map);
+  std::optional<PoseFromMatches> pose = find_pose(tracked, features, map, places);
   if (pose) {
     pose = track_local_map(tracked, features, *pose, map);
     if (!lost_) pose = refine_shutter(tracked, features, *pose, map);
@@ -71,19 +74,20 @@ TrackedFrame Tracker::track(const RgbdFrame& frame, Features features, const Map
 
 std::optional<Tracker::PoseFromMatches> Tracker::find_pose(const TrackedFrame& frame,
                                                            const Features& features,
-                                                           const Map& map) const {
+                                                           const Map& map,
+                                                           const PlaceIndex& places) const {
   if (!lost_) {
     if (auto pose = track_last_frame(frame, features, map)) return pose;
     if (auto pose = track_reference(frame, features, map)) return pose;
   }
-  return relocalize(frame, features, map);
+  return relocalize(frame, features, map, places);
 }
 
 std::optional<Tracker::PoseFromMatches> Tracker::relocalize(const TrackedFrame& frame,
                                                             const Features& features,
-                                                            const Map& map) const {
-  const std::optional<Relocalization> found =
-      relocalizer_.find(frame.id, features, map, frame.reference);
+                                                            const Map& map,
+                                                            const PlaceIndex& places) const {
+  const std::optional<Relocalization> found = relocalizer_.find(frame.id, features, map, places);
   if (!found) return std::nullopt;
   PoseFromMatches pose{found->T_camera_world, {}};
   for (const auto& [feature, landmark] : found->matches) {

@@ -59,7 +59,11 @@ class Tracker {
   /// The frame that a map begins with: at the world's origin.
   [[nodiscard]] TrackedFrame start(const RgbdFrame& frame, Features features);
 
-  [[nodiscard]] TrackedFrame track(const RgbdFrame& frame, Features features, const Map& map);
+  /// `places` holds the map's key frames, to look for the camera among them.
+  [[nodiscard]] TrackedFrame track(const RgbdFrame& frame,
+                                   Features features,
+                                   const Map& map,
+                                   const PlaceIndex& places);
 
   /// Where the camera should be at a time soon after the last frame; nothing when it is lost or has
   /// not begun.
@@ -86,7 +90,8 @@ class Tracker {
 
   [[nodiscard]] std::optional<PoseFromMatches> find_pose(const TrackedFrame& frame,
                                                          const Features& features,
-                                                         const Map& map) const;
+                                                         const Map& map,
+                                                         const PlaceIndex& places) const;
   [[nodiscard]] std::optional<PoseFromMatches> track_last_frame(const TrackedFrame& frame,
                                                                 const Features& features,
                                                                 const Map& map) const;
@@ -95,7 +100,8 @@ class Tracker {
                                                                const Map& map) const;
   [[nodiscard]] std::optional<PoseFromMatches> relocalize(const TrackedFrame& frame,
                                                           const Features& features,
-                                                          const Map& map) const;
+                                                          const Map& map,
+                                                          const PlaceIndex& places) const;
   [[nodiscard]] Matches match_last_frame(const Features& features,
                                          const Map& map,
                                          const Eigen::Isometry3d& T_camera_world,

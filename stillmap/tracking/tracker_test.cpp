@@ -41,7 +41,8 @@ class Walk {
     return world().observe_rolling(path_, time(k), readout_s_, noise, rng_);
   }
   TrackedFrame track(int k, Features features) {
-    return tracker_.track(frame_at(k), std::move(features), simulated_.map);
+    return tracker_.track(
+        frame_at(k), std::move(features), simulated_.map, index_of(simulated_.map));
   }
 
   [[nodiscard]] double error_m(const TrackedFrame& frame) const {
@@ -181,8 +182,8 @@ TEST(Tracker, FollowsAPatternWhoseCornersLookAlike) {
     frame.id = FrameId(k);
     frame.stamp.seconds = k * kFrameInterval_s;
     const Eigen::Isometry3d truth = path(frame.stamp.seconds);
-    const TrackedFrame tracked =
-        tracker.track(frame, world.observe(truth, kNoise, rng).features, simulated.map);
+    const TrackedFrame tracked = tracker.track(
+        frame, world.observe(truth, kNoise, rng).features, simulated.map, PlaceIndex());
     ASSERT_EQ(tracked.status, TrackingStatus::kTracked) << k;
     EXPECT_LT((tracked.T_world_camera.translation() - truth.translation()).norm(), 0.02);
   }
@@ -262,7 +263,7 @@ TEST(Tracker, MergedLandmarksAndDroppedKeyframesReachIt) {
   frame.id = FrameId(1);
   frame.stamp.seconds = kFrameInterval_s;
   const Observed second = Walk::world().observe(path(kFrameInterval_s), {}, rng);
-  const TrackedFrame tracked = tracker.track(frame, second.features, simulated.map);
+  const TrackedFrame tracked = tracker.track(frame, second.features, simulated.map, PlaceIndex());
   ASSERT_EQ(tracked.status, TrackingStatus::kTracked);
   EXPECT_EQ(tracked.reference, KeyframeId(0));
   EXPECT_LT((tracked.T_world_camera.translation() - (moved * path(kFrameInterval_s)).translation())
@@ -314,7 +315,7 @@ TEST(Tracker, UsesALandmarkOnceInAFrame) {
   }
   frame.id = FrameId(1);
   frame.stamp.seconds = kFrameInterval_s;
-  const TrackedFrame tracked = tracker.track(frame, seen.features, simulated.map);
+  const TrackedFrame tracked = tracker.track(frame, seen.features, simulated.map, PlaceIndex());
   ASSERT_EQ(tracked.status, TrackingStatus::kTracked);
   std::set<LandmarkId> used;
   for (const LandmarkId landmark : tracked.landmarks) {
