@@ -28,6 +28,8 @@ struct Id {
 using FrameId = Id<struct FrameTag>;
 using KeyframeId = Id<struct KeyframeTag>;
 using LandmarkId = Id<struct LandmarkTag>;
+/// A coordinate frame that key frames share. Tracking that was lost for long begins another.
+using WorldId = Id<struct WorldTag>;
 
 }  // namespace stillmap
 

@@ -16,6 +16,8 @@ struct Keyframe {
   KeyframeId id;
   FrameId frame;
   Stamp stamp;
+  WorldId world{0};
+  bool is_origin = false;  ///< the first of its world, which adjustment holds where it is
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   FeaturesPtr features;
   std::vector<LandmarkId> landmarks;  ///< per feature; invalid where it sees none

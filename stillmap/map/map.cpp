@@ -90,7 +90,15 @@ Keyframe& Map::touch(KeyframeId id) {
   return keyframes_.at(id);
 }
 
+std::vector<WorldId> Map::worlds() const {
+  std::set<WorldId> worlds;
+  for (const auto& [id, keyframe] : keyframes_) worlds.insert(keyframe.world);
+  return {worlds.begin(), worlds.end()};
+}
+
 KeyframeId Map::add_keyframe(Keyframe keyframe) {
+  const auto of_its_world = [&](const auto& other) { return other.second.world == keyframe.world; };
+  keyframe.is_origin = std::ranges::none_of(keyframes_, of_its_world);
   const KeyframeId id = next_keyframe_;
   next_keyframe_ = KeyframeId(id.value + 1);
   keyframe.id = id;
@@ -153,6 +161,7 @@ void Map::merge_landmarks(LandmarkId gone, LandmarkId into) {
 
 void Map::remove_keyframe(KeyframeId id, KeyframeId anchor) {
   const Keyframe dropped = keyframes_.at(id);
+  STILLMAP_CHECK(!dropped.is_origin);
   for (const LandmarkId landmark : dropped.landmarks) {
     if (landmark.valid()) remove_observation(landmark, id);
   }
@@ -162,6 +171,26 @@ void Map::remove_keyframe(KeyframeId id, KeyframeId anchor) {
   changed_keyframes_.erase(id);
   dropped_keyframes_[id] = fixed;
   new_dropped_.emplace_back(id, fixed);
+}
+
+void Map::join_worlds(WorldId gone, WorldId into, const Eigen::Isometry3d& T_into_gone) {
+  STILLMAP_CHECK(gone != into);
+  std::set<LandmarkId> moved;
+  for (auto& [id, keyframe] : keyframes_) {
+    if (keyframe.world != gone) continue;
+    touch(id);
+    keyframe.world = into;
+    keyframe.is_origin = false;
+    keyframe.T_world_camera = T_into_gone * keyframe.T_world_camera;
+    for (const LandmarkId landmark : keyframe.landmarks) {
+      if (landmark.valid()) moved.insert(landmark);
+    }
+  }
+  for (const LandmarkId id : moved) {
+    Landmark& landmark = touch(id);
+    landmark.p_world = T_into_gone * landmark.p_world;
+    landmark.viewing_direction = T_into_gone.linear() * landmark.viewing_direction;
+  }
 }
 
 void Map::set_pose(KeyframeId id, const Eigen::Isometry3d& T_world_camera) {

@@ -31,6 +31,8 @@ class Map {
   [[nodiscard]] const std::map<KeyframeId, Keyframe>& keyframes() const { return keyframes_; }
   [[nodiscard]] const Keyframe& keyframe(KeyframeId id) const { return keyframes_.at(id); }
   [[nodiscard]] bool has(KeyframeId id) const { return keyframes_.contains(id); }
+  /// The worlds that have key frames, sorted.
+  [[nodiscard]] std::vector<WorldId> worlds() const;
   [[nodiscard]] std::size_t landmark_count() const { return landmarks_.size(); }
   [[nodiscard]] const Landmark& landmark(LandmarkId id) const { return landmarks_.at(id); }
   /// Null when there is none (any more).
@@ -44,7 +46,8 @@ class Map {
   /// The key frame itself, or the one that a dropped one is fixed to.
   [[nodiscard]] Anchor anchor(KeyframeId id) const;
 
-  KeyframeId add_keyframe(Keyframe keyframe);  ///< sets its id; its landmark list becomes empty
+  /// Sets its id and whether it is an origin; its landmark list becomes empty.
+  KeyframeId add_keyframe(Keyframe keyframe);
   /// A new landmark seen by feature `feature` of `keyframe`.
   LandmarkId add_landmark(const Eigen::Vector3d& p_world, Observation seen_by);
   /// False, with nothing done, if the key frame sees the landmark already or the feature is taken.
@@ -54,10 +57,13 @@ class Map {
   void remove_landmark(LandmarkId id);
   /// `gone` becomes part of `into`; where a key frame sees both, `into`'s feature stays.
   void merge_landmarks(LandmarkId gone, LandmarkId into);
-  /// Drops a key frame that is not the first; frames that refer to it are fixed to `anchor`.
+  /// Drops a key frame that is no origin; frames that refer to it are fixed to `anchor`.
   void remove_keyframe(KeyframeId id, KeyframeId anchor);
   void set_pose(KeyframeId id, const Eigen::Isometry3d& T_world_camera);
   void set_position(LandmarkId id, const Eigen::Vector3d& p_world);
+  /// Moves all that is in the world `gone` into another, which then has one origin as before. Not
+  /// for windows.
+  void join_worlds(WorldId gone, WorldId into, const Eigen::Isometry3d& T_into_gone);
   /// Brings descriptor, viewing direction and distance range up to the observations.
   void refresh(LandmarkId id);
   void count_expected(LandmarkId id) { ++landmarks_.at(id).times_expected; }

@@ -58,7 +58,7 @@ int cull_redundant_keyframes(Map& map,
                              const CullingConfig& config) {
   int removed = 0;
   for (const KeyframeId id : candidates) {
-    if (id == newest || id == map.keyframes().begin()->first || id == KeyframeId(0)) continue;
+    if (id == newest || map.keyframe(id).is_origin) continue;
     if (!is_redundant(map, map.keyframe(id), measure, config)) continue;
     const std::vector<CovisibleKeyframe> neighbors = covisible_keyframes(map, id);
     if (neighbors.empty()) continue;

@@ -24,7 +24,7 @@ IndexedProblem make_problem(const Map& map,
     camera_index[id] = static_cast<std::uint32_t>(indexed.keyframes.size());
     indexed.keyframes.push_back(id);
     problem.T_camera_world.push_back(keyframe.T_world_camera.inverse());
-    problem.held.push_back(free.contains(id) && id != KeyframeId(0) ? 0 : 1);
+    problem.held.push_back(free.contains(id) && !keyframe.is_origin ? 0 : 1);
   }
   for (const LandmarkId id : map.landmark_ids()) {
     const Landmark& landmark = map.landmark(id);

@@ -11,7 +11,7 @@
 namespace stillmap {
 
 /// Bundle adjustment of a map: the poses of `free_keyframes` and every landmark that one of them
-/// sees move; all other key frames are held, and so is the first of the world. Observations that
+/// sees move; all other key frames are held, and so are origins. Observations that
 /// end outside the 95 % bound are removed.
 void adjust_map(Map& map,
                 std::span<const KeyframeId> free_keyframes,

@@ -11,6 +11,7 @@
 #include "stillmap/cloud/local_cloud.hpp"
 #include "stillmap/cloud/range_image.hpp"
 #include "stillmap/cloud/static_depth.hpp"
+#include "stillmap/cloud/static_view.hpp"
 #include "stillmap/core/camera.hpp"
 #include "stillmap/core/fields.hpp"
 #include "stillmap/core/rgbd_frame.hpp"
@@ -64,12 +65,6 @@ struct CloudConfig {
     visit.group("range", self.range);
     visit.group("free", self.free);
   }
-};
-
-/// What a frame keeps for the map, in its camera's coordinates.
-struct StaticView {
-  PointCloud cloud;
-  RangeImage range;  ///< empty when free space is not asked for
 };
 
 struct PosedView {

@@ -150,7 +150,7 @@ void System::apply(const MapUpdate& update) {
 // The last frame that was recorded.
 void System::add_view(const FramePtr& frame, const FrameDynamics& dynamics) {
   const std::size_t index = views_.size();
-  views_.push_back({records_.size() - 1, nullptr});
+  views_.push_back({static_cast<std::uint32_t>(records_.size() - 1), nullptr});
   since_view_ = 0;
   const DynamicMask mask = dynamics.judged.mask;
   const cv::Mat1b excluded = dynamics.excluded;

@@ -9,6 +9,7 @@
 #include "stillmap/core/trajectory.hpp"
 #include "stillmap/map/map.hpp"
 #include "stillmap/place/place_index.hpp"
+#include "stillmap/session/session.hpp"
 #include "stillmap/system/cloud_stage.hpp"
 #include "stillmap/system/config.hpp"
 #include "stillmap/system/dynamics_stage.hpp"
@@ -53,17 +54,6 @@ class System {
   [[nodiscard]] double readout_s() const { return tracker_.readout_s(); }
 
  private:
-  /// A frame's pose, held relative to a key frame so that later optimisation reaches it.
-  struct FrameRecord {
-    Stamp stamp;
-    KeyframeId reference;
-    Eigen::Isometry3d T_reference_frame;
-  };
-
-  struct ViewRecord {
-    std::size_t frame;                       // its record's index
-    std::shared_ptr<const StaticView> view;  // null until it is ready
-  };
   using FinishedView = std::pair<std::size_t, std::shared_ptr<const StaticView>>;
 
   [[nodiscard]] TrackedFrame track(const RgbdFrame& frame, Features features);
