@@ -183,7 +183,7 @@ class SmallSlam {
     frame.id = FrameId(k);
     frame.stamp.seconds = time_s;
     TrackedFrame tracked = k == 0
-                               ? tracker_.start(frame, seen.features)
+                               ? tracker_.start(frame, std::make_shared<const Features>(seen.features))
                                : tracker_.track(frame, seen.features, simulated_.map, PlaceIndex());
     if (k > 0 && has_pose(tracked)) count(tracked);
     since_keyframe_.most_inliers = std::max(since_keyframe_.most_inliers, tracked.inliers);

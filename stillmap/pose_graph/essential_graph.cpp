@@ -78,11 +78,13 @@ std::vector<Pair> sharing_pairs(const Map& map, const std::vector<KeyframeId>& k
 }  // namespace
 
 EssentialGraph essential_graph(const Map& map,
+                               WorldId world,
                                std::span<const LoopEdge> loops,
                                const EssentialGraphConfig& config) {
   EssentialGraph essential;
   PoseGraph& graph = essential.graph;
   for (const auto& [id, keyframe] : map.keyframes()) {
+    if (keyframe.world != world) continue;
     essential.keyframes.push_back(id);
     graph.T_world.push_back(keyframe.T_world_camera);
     graph.held.push_back(graph.held.empty() ? 1 : 0);
@@ -104,7 +106,10 @@ EssentialGraph essential_graph(const Map& map,
     if (forest.join(to - 1, to)) graph.edges.push_back(now({to - 1, to, 1}));
   }
   for (const LoopEdge& loop : loops) {
-    if (!map.has(loop.a) || !map.has(loop.b)) continue;
+    const auto in_world = [&](KeyframeId id) {
+      return map.has(id) && map.keyframe(id).world == world;
+    };
+    if (!in_world(loop.a) || !in_world(loop.b)) continue;
     essential.loop_edges.push_back(static_cast<std::uint32_t>(graph.edges.size()));
     graph.edges.push_back(loop_edge(
         place_of(essential.keyframes, loop.a), place_of(essential.keyframes, loop.b), loop));

@@ -31,7 +31,7 @@ struct EssentialGraphConfig {
   }
 };
 
-/// The key frames of a map as a pose graph.
+/// The key frames of a world as a pose graph.
 struct EssentialGraph {
   std::vector<KeyframeId> keyframes;  ///< per pose, by id; the first is held
   PoseGraph graph;
@@ -40,11 +40,12 @@ struct EssentialGraph {
 
 /// The edges: a spanning tree along the most shared landmarks, all pairs that share `min_shared` or
 /// more, both as the poses are now; and the loops as they were measured, for key frames that are in
-/// the map. Where nothing is shared with earlier key frames, the one before is the neighbour.
+/// that world. Where nothing is shared with earlier key frames, the one before is the neighbour.
 ///
 /// To be made before the landmarks of both ends of a new loop are merged (else the ends would hold
 /// each other where they are), with all earlier loops.
 [[nodiscard]] EssentialGraph essential_graph(const Map& map,
+                                             WorldId world,
                                              std::span<const LoopEdge> loops,
                                              const EssentialGraphConfig& config);
 

@@ -77,7 +77,8 @@ TEST(EssentialGraph, HasATreeAndThePairsThatShareMuch) {
   const SimulatedWorld world({}, simulated_camera());
   std::mt19937 rng(2);
   const SimulatedMap simulated = make_true_map(world, round_poses(), {}, rng);
-  const EssentialGraph tree = essential_graph(simulated.map, {}, {.min_shared = 100000});
+  const EssentialGraph tree =
+      essential_graph(simulated.map, WorldId(0), {}, {.min_shared = 100000});
   EXPECT_EQ(tree.keyframes.size(), kCount);
   EXPECT_EQ(tree.graph.edges.size(), kCount - 1);
   // All that share 60 or more, counted one by one.
@@ -88,7 +89,8 @@ TEST(EssentialGraph, HasATreeAndThePairsThatShareMuch) {
     }
   }
   ASSERT_GT(strong, kCount - 1);
-  const EssentialGraph essential = essential_graph(simulated.map, {}, {.min_shared = 60});
+  const EssentialGraph essential =
+      essential_graph(simulated.map, WorldId(0), {}, {.min_shared = 60});
   EXPECT_GE(essential.graph.edges.size(), strong);
   EXPECT_LT(essential.graph.edges.size(), strong + kCount);
   for (const PoseGraphEdge& edge : essential.graph.edges) {
@@ -112,7 +114,7 @@ TEST(EssentialGraph, KeyframesThatShareNothingFollowTheOneBefore) {
       {KeyframeId(0), KeyframeId(3), Eigen::Isometry3d::Identity(), 0.001, 0.01},
       {KeyframeId(1), KeyframeId(3)},  // gone
   };
-  const EssentialGraph essential = essential_graph(map, loops, {});
+  const EssentialGraph essential = essential_graph(map, WorldId(0), loops, {});
   ASSERT_EQ(essential.graph.edges.size(), 3U);
   EXPECT_EQ(essential.graph.edges[0].to, 1U);  // places, not ids
   EXPECT_EQ(essential.graph.edges[1].to, 2U);
@@ -131,7 +133,7 @@ TEST(EssentialGraph, ALoopBringsADriftedMapBack) {
   const double before = worst_position(map);
   const LoopEdge loop{
       KeyframeId(0), KeyframeId(kCount - 1), truth[0].inverse() * truth[kCount - 1]};
-  const EssentialGraph essential = essential_graph(map, std::span(&loop, 1), {});
+  const EssentialGraph essential = essential_graph(map, WorldId(0), std::span(&loop, 1), {});
   const PoseGraphResult result = optimize_pose_graph(essential.graph, {});
   std::map<KeyframeId, Eigen::Isometry3d> moved;
   for (std::size_t i = 0; i < essential.keyframes.size(); ++i) {

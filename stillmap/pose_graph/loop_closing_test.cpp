@@ -109,7 +109,7 @@ TEST(LoopClosing, TheEndOfARoundFindsItsBeginningAndTheDriftGoes) {
     const Eigen::Isometry3d T_a_b = truth[loop.a.index()].inverse() * truth[loop.b.index()];
     EXPECT_LT((loop.T_a_b.inverse() * T_a_b).translation().norm(), 0.02);
   }
-  const EssentialGraph essential = essential_graph(map, loops, {});
+  const EssentialGraph essential = essential_graph(map, WorldId(0), loops, {});
   const PoseGraphResult result = optimize_pose_graph(essential.graph, {});
   std::map<KeyframeId, Eigen::Isometry3d> moved;
   for (std::size_t i = 0; i < essential.keyframes.size(); ++i) {

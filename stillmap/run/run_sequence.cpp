@@ -131,7 +131,7 @@ SequenceRun run_sequence(const TumSequence& sequence,
                          const RunOptions& options) {
   Stopwatch wall;
   const std::vector<FrameId> frames = select_frames(sequence, options.frames);
-  System system(config, sequence.camera(), options.threads);
+  System system(config, sequence.camera(), {.threads = options.threads});
   FrameSource source(sequence, frames, options.threads > 1);
   SequenceRun run;
   RunReport& report = run.report;

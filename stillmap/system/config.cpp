@@ -24,9 +24,6 @@ void SystemConfig::check() const {
         tracking.orb.weak_corner_threshold,
         tracking.orb.corner_threshold);
   }
-  if (loop.enabled) {
-    throw Error("loop.enabled is true: closing loops is not in this version; set it to false");
-  }
 }
 
 }  // namespace stillmap

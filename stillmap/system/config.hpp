@@ -5,6 +5,7 @@
 
 #include "stillmap/core/fields.hpp"
 #include "stillmap/features/orb_extractor.hpp"
+#include "stillmap/loop_closing/loop_config.hpp"
 #include "stillmap/mapping/local_mapper.hpp"
 #include "stillmap/optim/measurement_model.hpp"
 #include "stillmap/system/cloud_stage.hpp"
@@ -14,15 +15,6 @@
 #include "stillmap/tracking/tracker.hpp"
 
 namespace stillmap {
-
-struct LoopConfig {
-  bool enabled = false;
-
-  template <class Self, class Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("enabled", self.enabled, FieldInfo{"close loops: not in this version, must be false"});
-  }
-};
 
 /// Features and tracking, which share the group `tracking`.
 struct TrackingConfig {

@@ -115,7 +115,7 @@ TEST(System, LabelsStaticObjectsInTheMap) {
       scene_of({{"person", {20, 60, 80, 120}, 0}, {"chair", {200, 90, 60, 90}, 0}});
   SystemConfig config;
   config.dynamics.mode = "mask";
-  System system(config, options.camera, 1);
+  System system(config, options.camera, {.threads = 1});
   const FrameResult result = system.process(frame, pretended.objects);
   ASSERT_TRUE(result.is_keyframe);
   const RunResult done = system.finish();

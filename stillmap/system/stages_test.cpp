@@ -120,7 +120,7 @@ FrameDetections whole_curtain(std::uint32_t k) {
 /// The error in metres; a share of frames without a pose counts as so many metres.
 double error(Disturbance disturbance, const Network& network, const SystemConfig& config) {
   ObjectTracker tracker(config.dynamics.object_tracking(), FillRule::kBothWays);
-  System system(config, room().camera(), 1);
+  System system(config, room().camera(), {.threads = 1});
   Trajectory truth;
   std::vector<FramePtr> frames;
   const auto process = [&](FrameObjects objects) {

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <limits>
+#include <tuple>
 
 #include "stillmap/core/error.hpp"
-#include "stillmap/mapping/map_adjustment.hpp"
-#include "stillmap/system/label_image.hpp"
+#include "stillmap/session/session_map.hpp"
 #include "stillmap/system/stopwatch.hpp"
 
 namespace stillmap {
@@ -17,33 +17,86 @@ const SystemConfig& checked(const SystemConfig& config) {
   return config;
 }
 
-constexpr std::int64_t kAll = std::numeric_limits<std::int64_t>::max();
+LoopDetector loop_detector(const SystemConfig& config,
+                           const CameraModel& camera,
+                           const std::vector<float>& level_scales) {
+  return {config.loop, camera, config.measurement, level_scales, config.seed};
+}
+
+bool same_lens(const CameraModel& a, const CameraModel& b) {
+  const auto intrinsics = [](const CameraModel& c) {
+    return std::tuple(
+        c.width_px, c.height_px, c.fx, c.fy, c.cx, c.cy, c.k1, c.k2, c.p1, c.p2, c.k3);
+  };
+  return intrinsics(a) == intrinsics(b);
+}
+
+void check_fits(const Session& session,
+                const CameraModel& camera,
+                const std::vector<float>& level_scales) {
+  if (!same_lens(session.camera, camera)) {
+    throw Error(
+        "the saved map is of camera '{}' ({} x {} px, fx {:.2f}), the sequence of '{}' ({} x {} "
+        "px, fx {:.2f}): expected the same; see --camera",
+        session.camera.name,
+        session.camera.width_px,
+        session.camera.height_px,
+        session.camera.fx,
+        camera.name,
+        camera.width_px,
+        camera.height_px,
+        camera.fx);
+  }
+  if (session.map.level_scales() != level_scales) {
+    throw Error(
+        "the saved map has {} pyramid levels of other sizes than these settings: expected the same "
+        "tracking.levels and tracking.scale_factor",
+        session.map.level_scales().size());
+  }
+}
+
+constexpr std::int64_t kEnd = std::int64_t{1} << 62;  // after all frames, and what they lead to
 
 }  // namespace
 
-System::System(const SystemConfig& config, const CameraModel& camera, int threads)
+System::System(const SystemConfig& config, const CameraModel& camera, const SystemOptions& options)
     : config_(checked(config)),
       cloud_config_(config.cloud.decided(config.dynamics.mode)),
       camera_(camera),
-      rays_(pixel_rays(camera)),
+      localize_only_(options.localize_only),
       dynamics_(config.dynamics, camera, config.seed),
       extractor_(config.tracking.orb, camera),
       measure_(config.measurement, extractor_.level_scales()),
-      map_(extractor_.level_scales()),
+      session_{camera, {}, Map(extractor_.level_scales()), {}, {}, {}},
       tracker_(config.tracking.tracker, config.relocalization, camera, measure_, config.seed),
-      worker_(threads > 1 ? std::make_unique<Worker>() : nullptr),
+      worker_(options.threads > 1 ? std::make_unique<Worker>() : nullptr),
       mapping_jobs_(worker_.get()),
-      view_jobs_(worker_.get()) {}
+      views_(cloud_config_, camera, config.mapping.lag_frames, worker_.get()),
+      loops_(config.loop,
+             camera,
+             measure_,
+             loop_detector(config, camera, extractor_.level_scales()),
+             options.threads > 1) {}
+
+void System::load(Session session) {
+  STILLMAP_CHECK(frame_number_ == 0);
+  check_fits(session, camera_, extractor_.level_scales());
+  session_ = std::move(session);
+  first_frame_ = session_.frames.size();
+  loops_.set_places(index_of(session_.map));
+  const std::vector<WorldId> worlds = session_.map.worlds();
+  if (!worlds.empty()) next_world_ = WorldId(worlds.back().value + 1);
+}
 
 FrameResult System::process(const FramePtr& frame, FrameObjects objects) {
   Stopwatch total, stage;
   FrameResult result;
-  for (const MapUpdate& update : mapping_jobs_.collect_due(frame_number_)) apply(update);
-  collect_views(frame_number_);
+  update_map(frame_number_);
   result.stages.push_back({"mapping", stage.lap_ms()});
 
-  const std::optional<Eigen::Isometry3d> expected =
-      tracker_.expected_pose(frame->stamp.seconds, map_);
+  std::optional<Eigen::Isometry3d> expected =
+      tracker_.expected_pose(frame->stamp.seconds, session_.map);
+  if (expected) expected = T_odometry_world_ * *expected;
   if (dynamics_.enabled()) {
     result.dynamics = dynamics_.judge(*frame, std::move(objects), expected);
     result.stages.push_back({"dynamics", stage.lap_ms()});
@@ -66,75 +119,95 @@ FrameResult System::process(const FramePtr& frame, FrameObjects objects) {
   since_keyframe_.most_inliers = std::max(since_keyframe_.most_inliers, tracked.inliers);
   ++since_keyframe_.frames;
   if (tracked.status == TrackingStatus::kInitialized ||
-      wants_keyframe(config_.keyframe, tracked, since_keyframe_)) {
+      (!localize_only_ && wants_keyframe(config_.keyframe, tracked, since_keyframe_))) {
     tracked.reference = insert_keyframe(*frame, tracked);
     result.is_keyframe = true;
   }
-  ++since_view_;
-  if (has_pose(tracked)) {
-    record(*frame, tracked, tracked.T_world_camera);
-    const int gap = config_.cloud.view_gap_frames;
-    if (result.is_keyframe || (gap > 0 && since_view_ >= gap)) add_view(frame, result.dynamics);
-  }
-  if (dynamics_.enabled()) {
-    has_pose(tracked) ? dynamics_.remember(*frame, tracked.T_world_camera, result.dynamics)
-                      : dynamics_.forget();
-  }
+  remember(frame, result);
   result.stages.push_back({"keyframe", stage.lap_ms()});
-  lost_ = !has_pose(tracked);
   ++frame_number_;
   return result;
 }
 
-TrackedFrame System::track(const RgbdFrame& frame, Features features) {
-  if (map_.keyframes().empty()) {
-    int with_depth = 0;
-    for (std::size_t i = 0; i < features.size(); ++i) {
-      with_depth += measure_.has_depth(features, i) ? 1 : 0;
-    }
-    if (with_depth >= config_.tracking.tracker.min_inliers) {
-      return tracker_.start(frame, std::move(features));
-    }
-    TrackedFrame lost;
-    lost.id = frame.id;
-    lost.stamp_s = frame.stamp.seconds;
-    lost.landmarks.assign(features.size(), LandmarkId{});
-    lost.features = std::make_shared<const Features>(std::move(features));
-    return lost;
+// What mapping and loop closing have come to. Only one key frame's mapping is under way at a time,
+// so that none is when the map is moved.
+void System::update_map(std::int64_t frame) {
+  const auto last_pose = [&] {
+    return session_.frames.empty() ? Eigen::Isometry3d::Identity()
+                                   : T_world_frame(session_, session_.frames.back());
+  };
+  const Eigen::Isometry3d T_world_last = last_pose();
+  bool moved = false;
+  for (const MapUpdate& update : mapping_jobs_.collect_due(frame)) {
+    apply(update);
+    moved = loops_.close(session_, session_.map.keyframes().rbegin()->first, frame) || moved;
   }
-  TrackedFrame tracked = tracker_.track(frame, std::move(features), map_, places_);
-  count_landmarks(tracked);
+  if (mapping_jobs_.empty()) moved = loops_.apply_due(session_.map, frame) || moved;
+  if (moved) T_odometry_world_ = T_odometry_world_ * T_world_last * last_pose().inverse();
+  views_.collect_due(session_, frame);
+}
+
+void System::apply(const MapUpdate& update) {
+  session_.map.apply(update);
+  for (const auto& [dropped, anchor] : update.dropped_keyframes) loops_.remove_keyframe(dropped);
+}
+
+// At the first frames, and when nothing known has been seen for long.
+bool System::may_begin_world(const Features& features) const {
+  if (localize_only_) return false;
+  const bool long_lost = lost_frames_ >= config_.relocalization.new_world_after_frames;
+  if (!session_.map.keyframes().empty() && !long_lost) return false;
+  int with_depth = 0;
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    with_depth += measure_.has_depth(features, i) ? 1 : 0;
+  }
+  return with_depth >= config_.tracking.tracker.min_inliers;
+}
+
+TrackedFrame System::track(const RgbdFrame& frame, Features features) {
+  TrackedFrame tracked = tracker_.track(frame, std::move(features), session_.map, loops_.places());
+  if (!has_pose(tracked) && may_begin_world(*tracked.features)) {
+    return tracker_.start(frame, tracked.features);
+  }
+  if (!localize_only_) count_landmarks(tracked);
   return tracked;
 }
 
 void System::count_landmarks(const TrackedFrame& tracked) {
   if (!has_pose(tracked)) return;
-  for (const LandmarkId id : tracked.expected) map_.count_expected(id);
+  for (const LandmarkId id : tracked.expected) session_.map.count_expected(id);
   for (const LandmarkId id : tracked.landmarks) {
-    if (id.valid()) map_.count_found(id);
+    if (id.valid()) session_.map.count_found(id);
   }
 }
 
 KeyframeId System::insert_keyframe(const RgbdFrame& frame, const TrackedFrame& tracked) {
+  Map& map = session_.map;
   Keyframe keyframe;
   keyframe.frame = frame.id;
   keyframe.stamp = frame.stamp;
+  if (tracked.status == TrackingStatus::kInitialized) {
+    keyframe.world = next_world_;
+    next_world_ = WorldId(next_world_.value + 1);
+  } else {
+    keyframe.world = map.keyframe(map.anchor(tracked.reference).keyframe).world;
+  }
   keyframe.T_world_camera = tracked.T_world_camera;
   keyframe.features = tracked.features;
-  const KeyframeId id = map_.add_keyframe(std::move(keyframe));
-  places_.add(id, tracked.features->descriptors);
+  const KeyframeId id = map.add_keyframe(std::move(keyframe));
   for (std::uint32_t i = 0; i < tracked.landmarks.size(); ++i) {
     if (!tracked.landmarks[i].valid()) continue;
-    map_.add_observation(tracked.landmarks[i], {id, i});
-    map_.refresh(tracked.landmarks[i]);
+    map.add_observation(tracked.landmarks[i], {id, i});
+    map.refresh(tracked.landmarks[i]);
   }
-  create_landmarks_from_depth(map_, id, camera_, measure_, config_.mapping.creation);
-  (void)map_.take_changes();  // the owner knows them; only windows hand changes on
-  tracker_.set_reference(id, map_);
+  create_landmarks_from_depth(map, id, camera_, measure_, config_.mapping.creation);
+  (void)map.take_changes();  // the owner knows them; only windows hand changes on
+  loops_.add_keyframe(map.keyframe(id));
+  tracker_.set_reference(id, map);
   since_keyframe_ = {};
 
-  std::vector<KeyframeId> core = mapping_core(map_, id, config_.mapping);
-  auto window = std::make_shared<Map>(map_.window(core));
+  std::vector<KeyframeId> core = mapping_core(map, id, config_.mapping);
+  auto window = std::make_shared<Map>(map.window(core));
   mapping_jobs_.submit(
       frame_number_ + config_.mapping.lag_frames, [window, core = std::move(core), this] {
         return map_locally(std::move(*window), core, camera_, measure_, config_.mapping);
@@ -142,78 +215,64 @@ KeyframeId System::insert_keyframe(const RgbdFrame& frame, const TrackedFrame& t
   return id;
 }
 
-void System::apply(const MapUpdate& update) {
-  map_.apply(update);
-  for (const auto& [dropped, anchor] : update.dropped_keyframes) places_.remove(dropped);
-}
-
-// The last frame that was recorded.
-void System::add_view(const FramePtr& frame, const FrameDynamics& dynamics) {
-  const std::size_t index = views_.size();
-  views_.push_back({static_cast<std::uint32_t>(records_.size() - 1), nullptr});
-  since_view_ = 0;
-  const DynamicMask mask = dynamics.judged.mask;
-  const cv::Mat1b excluded = dynamics.excluded;
-  const cv::Mat1b labels = label_image(frame->depth, dynamics);
-  view_jobs_.submit(
-      frame_number_ + config_.mapping.lag_frames, [frame, mask, excluded, labels, index, this] {
-        const NotStatic masks = not_static(mask, excluded);
-        return FinishedView(index,
-                            std::make_shared<const StaticView>(
-                                static_view(*frame, rays_, cloud_config_, masks, labels)));
-      });
-}
-
-void System::collect_views(std::int64_t frame) {
-  for (auto& [i, view] : view_jobs_.collect_due(frame)) views_[i].view = std::move(view);
-}
-
-void System::record(const RgbdFrame& frame,
-                    const TrackedFrame& tracked,
-                    const Eigen::Isometry3d& T_world_camera) {
-  records_.push_back({frame.stamp,
-                      tracked.reference,
-                      map_.T_world_keyframe(tracked.reference).inverse() * T_world_camera});
+// The frame's place in the session, and what later frames are compared with.
+void System::remember(const FramePtr& frame, FrameResult& result) {
+  const TrackedFrame& tracked = result.tracked;
+  lost_frames_ = has_pose(tracked) ? 0 : lost_frames_ + 1;
+  if (!has_pose(tracked)) {
+    loops_.tracking_lost();
+    dynamics_.forget();
+    return;
+  }
+  session_.frames.push_back(
+      {frame->stamp,
+       tracked.reference,
+       session_.map.T_world_keyframe(tracked.reference).inverse() * tracked.T_world_camera});
+  if (!localize_only_) {
+    views_.add(session_, frame, result.dynamics, result.is_keyframe, frame_number_);
+  }
+  if (dynamics_.enabled()) {
+    dynamics_.remember(*frame, T_odometry_world_ * tracked.T_world_camera, result.dynamics);
+  }
 }
 
 RunResult System::finish() {
-  for (const MapUpdate& update : mapping_jobs_.collect_due(kAll)) apply(update);
-  collect_views(kAll);
+  update_map(kEnd);  // which may begin another adjustment
+  loops_.apply_due(session_.map, std::numeric_limits<std::int64_t>::max());
+  session_.camera.readout_s = readout_s();
 
   RunResult result;
-  result.lost_at_end = lost_;
-  result.trajectory = final_trajectory();
-  for (const auto& [id, keyframe] : map_.keyframes()) {
-    result.keyframes.push_back({keyframe.stamp, keyframe.T_world_camera});
+  result.lost_at_end = lost_frames_ > 0 || frame_number_ == 0;
+  WorldId world = main_world(session_, first_frame_);
+  if (!world.valid()) world = main_world(session_);  // nothing of this run was tracked
+  result.trajectory = trajectory_in(session_, world, first_frame_);
+  result.frames_elsewhere = session_.frames.size() - first_frame_ - result.trajectory.size();
+  result.keyframes = keyframes_in(session_, world);
+  result.loops_closed = session_.loops.size();
+  std::vector<PosedView> posed;
+  for (const ViewRecord& view : session_.views) {
+    const FrameRecord& record = session_.frames[view.frame];
+    if (world_of(session_, record) != world) continue;
+    posed.push_back({T_world_frame(session_, record), view.view.get()});
   }
-  std::vector<std::optional<Eigen::Isometry3d>> T_world_frames;
-  for (const StampedPose& frame : result.trajectory) {
-    T_world_frames.emplace_back(frame.T_world_camera);
-  }
-  result.map = cloud_with_poses(T_world_frames);
+  result.map = static_map(posed, camera_, cloud_config_);
   return result;
-}
-
-Trajectory System::final_trajectory() const {
-  Trajectory trajectory;
-  trajectory.reserve(records_.size());
-  for (const FrameRecord& record : records_) {
-    trajectory.push_back({record.stamp, T_world_frame(record)});
-  }
-  return trajectory;
-}
-
-Eigen::Isometry3d System::T_world_frame(const FrameRecord& record) const {
-  return map_.T_world_keyframe(record.reference) * record.T_reference_frame;
 }
 
 PointCloud System::cloud_with_poses(
     std::span<const std::optional<Eigen::Isometry3d>> T_world_frames) const {
-  STILLMAP_CHECK(T_world_frames.size() == records_.size());
+  const WorldId world = main_world(session_, first_frame_);
+  std::vector<std::optional<Eigen::Isometry3d>> poses(session_.frames.size());
+  std::size_t given = 0;
+  for (std::size_t i = first_frame_; i < poses.size(); ++i) {
+    if (world_of(session_, session_.frames[i]) != world) continue;
+    STILLMAP_CHECK(given < T_world_frames.size());
+    poses[i] = T_world_frames[given++];
+  }
+  STILLMAP_CHECK(given == T_world_frames.size());
   std::vector<PosedView> posed;
-  for (const ViewRecord& view : views_) {
-    const std::optional<Eigen::Isometry3d>& T_world_frame = T_world_frames[view.frame];
-    if (T_world_frame) posed.push_back({*T_world_frame, view.view.get()});
+  for (const ViewRecord& view : session_.views) {
+    if (poses[view.frame]) posed.push_back({*poses[view.frame], view.view.get()});
   }
   return static_map(posed, camera_, cloud_config_);
 }

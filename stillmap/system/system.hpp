@@ -7,24 +7,32 @@
 
 #include "stillmap/core/rgbd_frame.hpp"
 #include "stillmap/core/trajectory.hpp"
-#include "stillmap/map/map.hpp"
-#include "stillmap/place/place_index.hpp"
 #include "stillmap/session/session.hpp"
-#include "stillmap/system/cloud_stage.hpp"
 #include "stillmap/system/config.hpp"
 #include "stillmap/system/dynamics_stage.hpp"
 #include "stillmap/system/frame_result.hpp"
 #include "stillmap/system/job_ledger.hpp"
+#include "stillmap/system/loop_stage.hpp"
+#include "stillmap/system/view_stage.hpp"
 #include "stillmap/system/worker.hpp"
 
 namespace stillmap {
 
 /// All that a finished run knows, under final poses.
 struct RunResult {
-  Trajectory trajectory;  ///< frames that were tracked
-  Trajectory keyframes;
-  PointCloud map;
+  /// The run's tracked frames in the world that has most of them. Others were tracked after a loss
+  /// in a world of their own, which no known place has joined to this one.
+  Trajectory trajectory;
+  std::size_t frames_elsewhere = 0;  ///< tracked, but in such a world
+  Trajectory keyframes;              ///< of that world, also those of a session that it continues
+  PointCloud map;                    ///< of that world
+  std::size_t loops_closed = 0;
   bool lost_at_end = false;
+};
+
+struct SystemOptions {
+  int threads = 1;             ///< 2 or more: mapping, clouds and loops beside the caller
+  bool localize_only = false;  ///< the map stays as it is
 };
 
 /// The SLAM system: owns the map and every stage.
@@ -35,7 +43,11 @@ struct RunResult {
 class System {
  public:
   /// Throws Error for settings that contradict each other.
-  System(const SystemConfig& config, const CameraModel& camera, int threads);
+  System(const SystemConfig& config, const CameraModel& camera, const SystemOptions& options);
+
+  /// Goes on from a saved session, once the camera sees a place that it knows. Before the first
+  /// frame. Throws Error when the session is of another camera or of another image pyramid.
+  void load(Session session);
 
   /// Tracks a frame; it may become a key frame. Frames have the camera's size. `objects`: what a
   /// network has found in it, if there is one.
@@ -45,50 +57,49 @@ class System {
   [[nodiscard]] RunResult finish();
 
   /// The cloud as it would be with the frames at other poses, in the order of
-  /// RunResult::trajectory; frames without a pose add nothing to it. After finish().
+  /// RunResult::trajectory; frames without a pose add nothing to it, nor do those that are not
+  /// in there. After finish().
   [[nodiscard]] PointCloud cloud_with_poses(
       std::span<const std::optional<Eigen::Isometry3d>> T_world_frames) const;
 
-  [[nodiscard]] const Map& map() const { return map_; }
+  /// What can be saved. After finish().
+  [[nodiscard]] const Session& session() const { return session_; }
+  [[nodiscard]] const Map& map() const { return session_.map; }
   /// Readout time of the camera's rolling shutter, as learnt so far.
   [[nodiscard]] double readout_s() const { return tracker_.readout_s(); }
 
  private:
-  using FinishedView = std::pair<std::size_t, std::shared_ptr<const StaticView>>;
-
+  [[nodiscard]] bool may_begin_world(const Features& features) const;
   [[nodiscard]] TrackedFrame track(const RgbdFrame& frame, Features features);
   [[nodiscard]] KeyframeId insert_keyframe(const RgbdFrame& frame, const TrackedFrame& tracked);
-  void apply(const MapUpdate& update);
-  void add_view(const FramePtr& frame, const FrameDynamics& dynamics);
-  [[nodiscard]] Eigen::Isometry3d T_world_frame(const FrameRecord& record) const;
+  void remember(const FramePtr& frame, FrameResult& result);
   void count_landmarks(const TrackedFrame& tracked);
-  void collect_views(std::int64_t frame);
-  void record(const RgbdFrame& frame,
-              const TrackedFrame& tracked,
-              const Eigen::Isometry3d& T_world_camera);
-  [[nodiscard]] Trajectory final_trajectory() const;
+  void update_map(std::int64_t frame);
+  void apply(const MapUpdate& update);
 
   SystemConfig config_;
   CloudConfig cloud_config_;  // decided
   CameraModel camera_;
-  cv::Mat2f rays_;
+  bool localize_only_;
   DynamicsStage dynamics_;
   OrbExtractor extractor_;
   MeasurementModel measure_;
-  Map map_;
-  PlaceIndex places_;  // of its key frames
+  Session session_;
+  std::size_t first_frame_ = 0;  // of this run in the session
   Tracker tracker_;
 
   std::int64_t frame_number_ = 0;  // of those processed
   KeyframeAge since_keyframe_;
-  bool lost_ = true;  // until the first frame
-  std::vector<FrameRecord> records_;
-  std::vector<ViewRecord> views_;  // of what goes into the map
-  int since_view_ = 0;             // frames
+  int lost_frames_ = 0;  // in a row
+  WorldId next_world_{0};
+  /// Corrections move the world; what compares frames with their past goes on in coordinates that
+  /// stay.
+  Eigen::Isometry3d T_odometry_world_ = Eigen::Isometry3d::Identity();
 
   std::unique_ptr<Worker> worker_;
   JobLedger<MapUpdate> mapping_jobs_;
-  JobLedger<FinishedView> view_jobs_;
+  ViewStage views_;
+  LoopStage loops_;
 };
 
 }  // namespace stillmap

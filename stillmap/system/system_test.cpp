@@ -54,7 +54,7 @@ struct FinishedRun {
 
 // Runs the frames; those from `dark_begin` to `dark_end` - 1 without light.
 FinishedRun run(int threads, std::uint32_t dark_begin = kFrames, std::uint32_t dark_end = kFrames) {
-  System system(static_world(), synthetic_camera(320, 240), threads);
+  System system(static_world(), synthetic_camera(320, 240), {.threads = threads});
   FinishedRun done;
   for (std::uint32_t k = 0; k < kFrames; ++k) {
     const bool dark = k >= dark_begin && k < dark_end;
@@ -114,7 +114,7 @@ TEST(System, GivesTheSameBitsWithAnyNumberOfThreads) {
 
 // Moved by whole voxels, so that points stay together; a point on the face between two may change.
 TEST(System, MakesItsCloudAgainUnderOtherPoses) {
-  System system(static_world(), synthetic_camera(320, 240), 1);
+  System system(static_world(), synthetic_camera(320, 240), {.threads = 1});
   for (std::uint32_t k = 0; k < kFrames; ++k) (void)system.process(frame(k));
   const RunResult result = system.finish();
   std::vector<std::optional<Eigen::Isometry3d>> same, moved;
@@ -175,7 +175,7 @@ TEST(System, OfNothingButDarknessGivesNothing) {
 
 TEST(System, CanBeGivenUpWithJobsPending) {
   for (std::uint32_t frames_done = 1; frames_done < 8; ++frames_done) {
-    System system({}, synthetic_camera(320, 240), 2);
+    System system({}, synthetic_camera(320, 240), {.threads = 2});
     for (std::uint32_t k = 0; k < frames_done; ++k) (void)system.process(frame(k));
   }
 }
@@ -217,7 +217,7 @@ double error_among_people(const std::string& mode) {
   const CrowdedFrames& crowded = crowded_frames();
   SystemConfig config;
   config.dynamics.mode = mode;
-  System system(config, synthetic_camera(320, 240), 1);
+  System system(config, synthetic_camera(320, 240), {.threads = 1});
   for (std::size_t i = 0; i < crowded.frames.size(); ++i) {
     (void)system.process(crowded.frames[i], crowded.objects[i]);
   }

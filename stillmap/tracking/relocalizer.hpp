@@ -16,6 +16,7 @@ struct RelocalizerConfig {
   int candidates = 5;
   int iterations = 200;
   int min_inliers = 25;
+  int new_world_after_frames = 60;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -24,6 +25,13 @@ struct RelocalizerConfig {
           FieldInfo{"key frames tried in a frame while lost", "", 1, 1000});
     visit("iterations", self.iterations, FieldInfo{"of RANSAC, per key frame", "", 1, 100000});
     visit("min_inliers", self.min_inliers, FieldInfo{"that prove a place", "", 4, 1000});
+    visit("new_world_after_frames",
+          self.new_world_after_frames,
+          FieldInfo{"lost for so long, the camera begins a new map, which joins the others when a "
+                    "place is recognised",
+                    "frames",
+                    1,
+                    1000000000});
   }
 };
 

@@ -27,13 +27,13 @@ Tracker::Tracker(const TrackerConfig& config,
       measure_(std::move(measure)),
       readout_(config.shutter, camera) {}
 
-TrackedFrame Tracker::start(const RgbdFrame& frame, Features features) {
+TrackedFrame Tracker::start(const RgbdFrame& frame, FeaturesPtr features) {
   TrackedFrame tracked;
   tracked.id = frame.id;
   tracked.stamp_s = frame.stamp.seconds;
   tracked.status = TrackingStatus::kInitialized;
-  tracked.landmarks.assign(features.size(), LandmarkId{});
-  tracked.features = std::make_shared<const Features>(std::move(features));
+  tracked.landmarks.assign(features->size(), LandmarkId{});
+  tracked.features = std::move(features);
   last_ = tracked;
   motion_.reset();
   lost_ = false;
@@ -47,12 +47,13 @@ TrackedFrame Tracker::track(const RgbdFrame& frame,
   TrackedFrame tracked;
   tracked.id = frame.id;
   tracked.stamp_s = frame.stamp.seconds;
-  tracked.reference = last_->reference;
   tracked.landmarks.assign(features.size(), LandmarkId{});
-
-  const double since_last_s = tracked.stamp_s - last_->stamp_s;
-  const CameraVelocity expected = mean_velocity(motion_.predict(since_last_s), since_last_s);
-  features = undo_rolling_shutter(std::move(features), camera_, readout_s(), expected);
+  if (last_) {
+    tracked.reference = last_->reference;
+    const double since_last_s = tracked.stamp_s - last_->stamp_s;
+    const CameraVelocity expected = mean_velocity(motion_.predict(since_last_s), since_last_s);
+    features = undo_rolling_shutter(std::move(features), camera_, readout_s(), expected);
+  }
   std::optional<PoseFromMatches> pose = find_pose(tracked, features, map, places);
   if (pose) {
     pose = track_local_map(tracked, features, *pose, map);

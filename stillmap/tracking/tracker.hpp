@@ -56,10 +56,11 @@ class Tracker {
           MeasurementModel measure,
           std::uint32_t seed);
 
-  /// The frame that a map begins with: at the world's origin.
-  [[nodiscard]] TrackedFrame start(const RgbdFrame& frame, Features features);
+  /// The frame that a world begins with: at its origin.
+  [[nodiscard]] TrackedFrame start(const RgbdFrame& frame, FeaturesPtr features);
 
-  /// `places` holds the map's key frames, to look for the camera among them.
+  /// Lost as long as no world was begun and no place of the map is recognised. `places` holds the
+  /// map's key frames, to look for the camera among them.
   [[nodiscard]] TrackedFrame track(const RgbdFrame& frame,
                                    Features features,
                                    const Map& map,
@@ -132,7 +133,7 @@ class Tracker {
   Eigen::Isometry3d T_reference_last_ = Eigen::Isometry3d::Identity();
   MotionModel motion_;
   ReadoutEstimator readout_;
-  bool lost_ = false;
+  bool lost_ = true;
 };
 
 }  // namespace stillmap

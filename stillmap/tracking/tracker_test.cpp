@@ -28,7 +28,7 @@ class Walk {
                  MeasurementModel(kMeasurement, world().level_scales()),
                  0) {
     const Keyframe& first = simulated_.map.keyframe(KeyframeId(0));
-    first_ = tracker_.start(frame_at(0), *first.features);
+    first_ = tracker_.start(frame_at(0), first.features);
     tracker_.set_reference(KeyframeId(0), simulated_.map);
   }
 
@@ -176,7 +176,7 @@ TEST(Tracker, FollowsAPatternWhoseCornersLookAlike) {
   add_true_keyframe(simulated, world, path(0), first);
   Tracker tracker = make_tracker();
   RgbdFrame frame;
-  (void)tracker.start(frame, first.features);
+  (void)tracker.start(frame, std::make_shared<const Features>(first.features));
   tracker.set_reference(KeyframeId(0), simulated.map);
   for (std::uint32_t k = 1; k <= 10; ++k) {
     frame.id = FrameId(k);
@@ -246,7 +246,7 @@ TEST(Tracker, MergedLandmarksAndDroppedKeyframesReachIt) {
   }
   Tracker tracker = make_tracker();
   RgbdFrame frame;
-  (void)tracker.start(frame, first.features);
+  (void)tracker.start(frame, std::make_shared<const Features>(first.features));
   tracker.set_reference(KeyframeId(1), simulated.map);
   const auto count = static_cast<std::uint32_t>(first.points.size());
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -308,7 +308,7 @@ TEST(Tracker, UsesALandmarkOnceInAFrame) {
   }
   Tracker tracker = make_tracker();
   RgbdFrame frame;
-  (void)tracker.start(frame, seen.features);
+  (void)tracker.start(frame, std::make_shared<const Features>(seen.features));
   tracker.set_reference(id, simulated.map);
   for (std::uint32_t i = 0; i < count / 2; ++i) {
     simulated.map.merge_landmarks(LandmarkId(count / 2 + i), LandmarkId(i));

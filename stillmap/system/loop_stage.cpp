@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/system/loop_stage.hpp"
+
+#include "stillmap/loop_closing/loop_closer.hpp"
+
+namespace stillmap {
+
+LoopStage::LoopStage(const LoopConfig& config,
+                     const CameraModel& camera,
+                     MeasurementModel measure,
+                     LoopDetector detector,
+                     bool threaded)
+    : config_(config),
+      camera_(camera),
+      measure_(std::move(measure)),
+      detector_(std::move(detector)),
+      worker_(threaded ? std::make_unique<Worker>() : nullptr),
+      adjustments_(worker_.get()) {}
+
+bool LoopStage::close(Session& session, KeyframeId newest, std::int64_t frame) {
+  if (!config_.enabled) return false;
+  const std::optional<FoundLoop> found = detector_.advance(session.map, places_, newest);
+  if (!found) return false;
+  if (!close_loop(session.map, session.loops, *found, camera_, measure_, config_)) return false;
+  detector_.clear();
+  ++closed_;
+  auto window =
+      std::make_shared<Map>(world_window(session.map, session.map.keyframe(newest).world));
+  adjustments_.submit(frame + config_.adjustment_lag_frames, [window, number = closed_, this] {
+    return NumberedCorrection(
+        number, adjust_globally(std::move(*window), camera_, measure_, config_.bundle));
+  });
+  return true;
+}
+
+bool LoopStage::apply_due(Map& map, std::int64_t frame) {
+  bool moved = false;
+  for (const auto& [number, correction] : adjustments_.collect_due(frame)) {
+    if (number != closed_) continue;  // a later loop has moved the map, and its adjustment follows
+    apply_correction(map, correction);
+    moved = true;
+  }
+  return moved;
+}
+
+}  // namespace stillmap

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <utility>
+
+#include "stillmap/loop_closing/global_adjustment.hpp"
+#include "stillmap/loop_closing/loop_detector.hpp"
+#include "stillmap/session/session.hpp"
+#include "stillmap/system/job_ledger.hpp"
+#include "stillmap/system/worker.hpp"
+
+namespace stillmap {
+
+/// Knows which places the key frames show, closes loops, and adjusts the whole world after each.
+///
+/// All calls that may move the map are made while no window of it is being worked on.
+class LoopStage {
+ public:
+  /// `threaded`: the adjustment of the world runs on a thread of its own. The same bits either way.
+  LoopStage(const LoopConfig& config,
+            const CameraModel& camera,
+            MeasurementModel measure,
+            LoopDetector detector,
+            bool threaded);
+
+  [[nodiscard]] const PlaceIndex& places() const { return places_; }
+  void add_keyframe(const Keyframe& keyframe) {
+    places_.add(keyframe.id, keyframe.features->descriptors);
+  }
+  void remove_keyframe(KeyframeId id) { places_.remove(id); }
+  /// The place index of a map that is there from the beginning.
+  void set_places(PlaceIndex places) { places_ = std::move(places); }
+  void tracking_lost() { detector_.clear(); }
+
+  /// Looks for a loop that ends in the newest key frame, to be called for each, and closes it: the
+  /// map is moved, its ends are merged, and an adjustment of the world begins. Says whether.
+  bool close(Session& session, KeyframeId newest, std::int64_t frame);
+
+  /// Brings adjustments that are due into the map. Says whether there was one.
+  bool apply_due(Map& map, std::int64_t frame);
+
+ private:
+  using NumberedCorrection = std::pair<int, GlobalCorrection>;  // of the n-th loop
+
+  LoopConfig config_;
+  CameraModel camera_;
+  MeasurementModel measure_;
+  LoopDetector detector_;
+  PlaceIndex places_;
+  int closed_ = 0;
+  std::unique_ptr<Worker> worker_;
+  JobLedger<NumberedCorrection> adjustments_;
+};
+
+}  // namespace stillmap

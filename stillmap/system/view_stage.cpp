@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/system/view_stage.hpp"
+
+#include "stillmap/system/label_image.hpp"
+
+namespace stillmap {
+
+ViewStage::ViewStage(const CloudConfig& config,
+                     const CameraModel& camera,
+                     int lag_frames,
+                     Worker* worker)
+    : config_(config), rays_(pixel_rays(camera)), lag_frames_(lag_frames), jobs_(worker) {}
+
+void ViewStage::add(Session& session,
+                    const FramePtr& frame,
+                    const FrameDynamics& dynamics,
+                    bool is_keyframe,
+                    std::int64_t frame_number) {
+  ++since_last_;
+  const int gap = config_.view_gap_frames;
+  if (!is_keyframe && (gap == 0 || since_last_ < gap)) return;
+  since_last_ = 0;
+  const std::size_t index = session.views.size();
+  session.views.push_back({static_cast<std::uint32_t>(session.frames.size() - 1), nullptr});
+  const DynamicMask mask = dynamics.judged.mask;
+  const cv::Mat1b excluded = dynamics.excluded;
+  const cv::Mat1b labels = label_image(frame->depth, dynamics);
+  jobs_.submit(frame_number + lag_frames_, [frame, mask, excluded, labels, index, this] {
+    const NotStatic masks = not_static(mask, excluded);
+    return FinishedView(
+        index,
+        std::make_shared<const StaticView>(static_view(*frame, rays_, config_, masks, labels)));
+  });
+}
+
+void ViewStage::collect_due(Session& session, std::int64_t frame_number) {
+  for (auto& [i, view] : jobs_.collect_due(frame_number)) session.views[i].view = std::move(view);
+}
+
+}  // namespace stillmap
