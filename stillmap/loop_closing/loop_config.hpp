@@ -29,11 +29,13 @@ struct LoopConfig {
     visit("candidates",
           self.candidates,
           FieldInfo{"key frames that look most like the newest, which are asked", "", 1, 100});
-    visit(
-        "inverse_depth_sigma",
-        self.inverse_depth_sigma,
-        FieldInfo{
-            "error of the sensor's inverse depth between two views of one place", "1/m", 1e-4, 1});
+    visit("inverse_depth_sigma",
+          self.inverse_depth_sigma,
+          FieldInfo{
+              "error of the inverse depth where loops are judged and the world is adjusted to them",
+              "1/m",
+              1e-4,
+              1});
     visit("max_edge_chi2",
           self.max_edge_chi2,
           FieldInfo{"a loop that all others contradict by more is not closed (squared error in "

@@ -16,21 +16,15 @@ std::vector<KeyframeId> neighbours(const Map& map, KeyframeId id) {
   return ids;
 }
 
-MeasurementConfig between_views(MeasurementConfig measurement, const LoopConfig& config) {
-  measurement.inverse_depth_sigma = config.inverse_depth_sigma;
-  return measurement;
-}
-
 }  // namespace
 
 LoopDetector::LoopDetector(const LoopConfig& config,
                            const CameraModel& camera,
-                           const MeasurementConfig& measurement,
-                           std::vector<float> level_scales,
+                           MeasurementModel measure,
                            std::uint32_t seed)
     : config_(config),
       camera_(camera),
-      measure_(between_views(measurement, config), std::move(level_scales)),
+      measure_(std::move(measure)),
       gate_(config.gate),
       verifier_(config.verifier, camera, measure_, seed) {}
 

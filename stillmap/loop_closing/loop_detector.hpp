@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "stillmap/loop/loop_gate.hpp"
 #include "stillmap/loop/loop_verifier.hpp"
@@ -24,10 +23,10 @@ struct FoundLoop {
 /// of another world.
 class LoopDetector {
  public:
+  /// `measure`: see LoopVerifier.
   LoopDetector(const LoopConfig& config,
                const CameraModel& camera,
-               const MeasurementConfig& measurement,
-               std::vector<float> level_scales,
+               MeasurementModel measure,
                std::uint32_t seed);
 
   /// To be called for every key frame, in their order, once its landmarks are mapped. `places`

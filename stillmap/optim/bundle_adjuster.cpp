@@ -15,6 +15,9 @@ using Matrix63d = Eigen::Matrix<double, 6, 3>;
 
 constexpr std::uint32_t kHeld = ~std::uint32_t{0};
 constexpr double kConverged = 1e-5;  // relative decrease of the cost
+// Squared error, in sigmas, of a point that a step has put behind a camera, where none is defined:
+// that of an outlier, since a step that does so to one of ten thousand points may still be good.
+constexpr double kBehind = 100.0;
 constexpr double kMaxDamping = 1e8;
 
 // Where a free camera's six numbers begin in the reduced system.
@@ -81,7 +84,10 @@ double Solver::cost_of(const std::vector<Eigen::Isometry3d>& poses,
     if (used_[i] == 0) continue;
     const BundleObservation& o = problem_.observations[i];
     const Eigen::Vector3d p_camera = poses[o.camera] * points[o.point];
-    if (p_camera.z() < kMinPointDepth) return std::numeric_limits<double>::infinity();
+    if (p_camera.z() < kMinPointDepth) {
+      cost += Huber(kBehind, chi2_bound(o.measurement)).cost;
+      continue;
+    }
     const Eigen::Vector3d r = reprojection_residual(problem_.camera, o.measurement, p_camera);
     cost += Huber(r.squaredNorm(), chi2_bound(o.measurement)).cost;
   }
@@ -110,6 +116,10 @@ void Solver::linearize() {
     const BundleObservation& o = problem_.observations[i];
     const Eigen::Isometry3d& T = problem_.T_camera_world[o.camera];
     const Eigen::Vector3d p_camera = T * problem_.points[o.point];
+    if (p_camera.z() < kMinPointDepth) {
+      W_[i].setZero();
+      continue;
+    }
     const Eigen::Vector3d r = reprojection_residual(problem_.camera, o.measurement, p_camera);
     const double weight = Huber(r.squaredNorm(), chi2_bound(o.measurement)).weight;
     const Eigen::Matrix3d J_camera_point =
@@ -222,8 +232,8 @@ int Solver::minimize(int iterations) {
   return iteration;
 }
 
-// Observations of points behind their camera, where the residual is undefined, and of what is no
-// number never take part: one of them would make every cost infinite.
+// Observations of points that are behind their camera from the beginning, where the residual is
+// undefined, and of what is no number never take part.
 std::vector<std::uint8_t> usable(const BundleProblem& problem) {
   std::vector<std::uint8_t> used(problem.observations.size());
   for (std::size_t i = 0; i < used.size(); ++i) {

@@ -7,13 +7,13 @@ namespace stillmap {
 
 LoopStage::LoopStage(const LoopConfig& config,
                      const CameraModel& camera,
-                     MeasurementModel measure,
-                     LoopDetector detector,
+                     const MeasurementModel& measure,
+                     std::uint32_t seed,
                      bool threaded)
     : config_(config),
       camera_(camera),
-      measure_(std::move(measure)),
-      detector_(std::move(detector)),
+      measure_(measure),
+      detector_(config, camera, measure, seed),
       worker_(threaded ? std::make_unique<Worker>() : nullptr),
       adjustments_(worker_.get()) {}
 
@@ -41,6 +41,12 @@ bool LoopStage::apply_due(Map& map, std::int64_t frame) {
     moved = true;
   }
   return moved;
+}
+
+void LoopStage::finish(Map& map, WorldId world) {
+  if (closed_ == 0 || !world.valid()) return;
+  apply_correction(map,
+                   adjust_globally(world_window(map, world), camera_, measure_, config_.bundle));
 }
 
 }  // namespace stillmap

@@ -18,11 +18,12 @@ namespace stillmap {
 /// All calls that may move the map are made while no window of it is being worked on.
 class LoopStage {
  public:
-  /// `threaded`: the adjustment of the world runs on a thread of its own. The same bits either way.
+  /// `measure` trusts depth as far as the sensor earns it. `threaded`: the adjustment of the world
+  /// runs on a thread of its own. The same bits either way.
   LoopStage(const LoopConfig& config,
             const CameraModel& camera,
-            MeasurementModel measure,
-            LoopDetector detector,
+            const MeasurementModel& measure,
+            std::uint32_t seed,
             bool threaded);
 
   [[nodiscard]] const PlaceIndex& places() const { return places_; }
@@ -40,6 +41,10 @@ class LoopStage {
 
   /// Brings adjustments that are due into the map. Says whether there was one.
   bool apply_due(Map& map, std::int64_t frame);
+
+  /// At the end: adjusts a world once more if this run has closed a loop, with all that has been
+  /// seen since.
+  void finish(Map& map, WorldId world);
 
  private:
   using NumberedCorrection = std::pair<int, GlobalCorrection>;  // of the n-th loop

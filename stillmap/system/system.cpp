@@ -2,7 +2,6 @@
 #include "stillmap/system/system.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <tuple>
 
 #include "stillmap/core/error.hpp"
@@ -17,10 +16,12 @@ const SystemConfig& checked(const SystemConfig& config) {
   return config;
 }
 
-LoopDetector loop_detector(const SystemConfig& config,
-                           const CameraModel& camera,
-                           const std::vector<float>& level_scales) {
-  return {config.loop, camera, config.measurement, level_scales, config.seed};
+// Over a whole loop depth has to count for what it is: pixels alone hardly tell a step aside from a
+// turn. Tracking trusts it less, since the sensor's errors are alike from frame to frame.
+MeasurementModel between_views(const SystemConfig& config, const std::vector<float>& level_scales) {
+  MeasurementConfig measurement = config.measurement;
+  measurement.inverse_depth_sigma = config.loop.inverse_depth_sigma;
+  return {measurement, level_scales};
 }
 
 bool same_lens(const CameraModel& a, const CameraModel& b) {
@@ -74,8 +75,8 @@ System::System(const SystemConfig& config, const CameraModel& camera, const Syst
       views_(cloud_config_, camera, config.mapping.lag_frames, worker_.get()),
       loops_(config.loop,
              camera,
-             measure_,
-             loop_detector(config, camera, extractor_.level_scales()),
+             between_views(config, extractor_.level_scales()),
+             config.seed,
              options.threads > 1) {}
 
 void System::load(Session session) {
@@ -238,7 +239,7 @@ void System::remember(const FramePtr& frame, FrameResult& result) {
 
 RunResult System::finish() {
   update_map(kEnd);  // which may begin another adjustment
-  loops_.apply_due(session_.map, std::numeric_limits<std::int64_t>::max());
+  loops_.finish(session_.map, main_world(session_, first_frame_));
   session_.camera.readout_s = readout_s();
 
   RunResult result;
