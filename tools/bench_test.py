@@ -144,7 +144,7 @@ class Runs(Folder):
         return json.loads((self.folder / "results.json").read_text())
 
     def test_runs_and_growth(self):
-        done = self.bench("--lengths", "40", "80")
+        done = self.bench("--lengths", "80,40")
         self.assertEqual(done.returncode, 0, done.stderr)
         results = self.results()
         self.assertEqual(list(results["runs"]), ["office, 3 frames, 1 thread", "office, 3 frames, 2 threads",
