@@ -167,6 +167,12 @@ class Runs(Folder):
         self.assertRegex(done.stderr, r"^tools/bench_runs: .*exit code 1: stillmap: a bad number$")
         self.assertFalse((self.folder / "results.json").exists())
 
+    def test_missing_detections_are_one_line(self):
+        done = subprocess.run([TOOLS / "bench_runs", "--program", self.program,
+                               f"office={self.sequence()},detections=nowhere"], capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stderr.count("\n")), (1, 1), done.stderr)
+        self.assertIn("nowhere/detections.jsonl", done.stderr)
+
     def test_parts(self):
         parts = self.folder / "parts"
         parts.mkdir()
