@@ -6,6 +6,7 @@
 
 program := build/release/bin/stillmap
 demo := out/demo
+comma := ,
 # Its name changes with tools/setup's content, so an edit of the package list sets up again.
 setup_stamp := build/.setup-$(firstword $(shell cksum tools/setup))
 
@@ -51,10 +52,12 @@ $(demo)/sequence: | build
 	@$(program) synth $@.partial --scene walking_xyz --frames 150 --detections imperfect
 	@mv $@.partial $@
 
+# BENCH=full: also 1000 and 3000 frames, there and back.
 bench: setup
 	@cmake --preset release -B build/bench -DSTILLMAP_BUILD_BENCHMARKS=ON -DSTILLMAP_BUILD_TESTS=OFF
 	@cmake --build build/bench --parallel
-	@set -e; for program in build/bench/bin/*_bench; do "$$program"; done
+	@tools/bench_runs --program build/bench/bin/stillmap --parts build/bench/bin --out build/bench/results.json \
+	  $(if $(filter full,$(BENCH)),--lengths 1000$(comma)3000) $(SEQUENCES)
 
 format: setup
 	@tools/check_format --fix

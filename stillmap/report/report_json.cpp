@@ -47,13 +47,12 @@ Json all_frames_json(const RunReport& report) {
   return json;
 }
 
-Json times_json(std::span<const double> values, bool with_max) {
+Json times_json(std::span<const double> values) {
   const std::optional<TimeSummary> summary = summarize_times(values);
-  Json json = {{"mean", summary ? Json(summary->mean) : Json()},
-               {"median", summary ? Json(summary->median) : Json()},
-               {"p95", summary ? Json(summary->p95) : Json()}};
-  if (with_max) json["max"] = summary ? Json(summary->max) : Json();
-  return json;
+  return {{"mean", summary ? Json(summary->mean) : Json()},
+          {"median", summary ? Json(summary->median) : Json()},
+          {"p95", summary ? Json(summary->p95) : Json()},
+          {"max", summary ? Json(summary->max) : Json()}};
 }
 
 Json time_json(const RunReport& report) {
@@ -62,10 +61,10 @@ Json time_json(const RunReport& report) {
   for (const StageTimes& stage : report.stages) {
     std::vector<double>& all = samples[stage.name];
     all.insert(all.end(), stage.ms.begin(), stage.ms.end());
-    stages[stage.name] = times_json(all, false);
+    stages[stage.name] = times_json(all);
   }
   return {{"wall_s", optional_json(report.wall_s)},
-          {"frame_ms", times_json(report.frame_ms, true)},
+          {"frame_ms", times_json(report.frame_ms)},
           {"stages_ms", stages}};
 }
 

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a frame keeps for the map, and the map made of it, with the settings of a run.
+#include <benchmark/benchmark.h>
+
+#include "bench/rendered_office.hpp"
+#include "stillmap/core/se3.hpp"
+#include "stillmap/system/cloud_stage.hpp"
+
+namespace stillmap {
+namespace {
+
+/// People are not static.
+NotStatic people(std::uint32_t step) {
+  cv::Mat1b mask(office().camera().height_px, office().camera().width_px, std::uint8_t{0});
+  const FrameDetections found = office().found(step);
+  for (const DetectedObject& object : found.objects) {
+    if (object.class_name == "person") mask.setTo(1, found.mask.mat == object.id);
+  }
+  return {mask, mask};
+}
+
+void keep_view(benchmark::State& state) {
+  const CloudConfig config = CloudConfig{}.decided("full");
+  const cv::Mat2f rays = pixel_rays(office().camera());
+  const FramePtr frame = office().frame(0);
+  const NotStatic masks = people(0);
+  StaticView view;
+  for (auto iteration : state) view = static_view(*frame, rays, config, masks, {});
+  state.counters["points"] = static_cast<double>(view.cloud.size());
+  state.counters["kilobytes"] =
+      1e-3 * static_cast<double>(view.cloud.size() * (sizeof(view.cloud.positions[0]) +
+                                                      sizeof(view.cloud.colors[0])) +
+                                 view.range.cells.size() * sizeof(RangeCell));
+}
+
+/// Views of one place, again and again: as many as a run keeps in 4 and in 20 seconds there.
+void assemble_static_map(benchmark::State& state) {
+  const CloudConfig config = CloudConfig{}.decided("full");
+  const cv::Mat2f rays = pixel_rays(office().camera());
+  std::vector<StaticView> views;
+  for (std::uint32_t k = 0; k < RenderedOffice::kFrames; ++k) {
+    views.push_back(static_view(*office().frame(k), rays, config, people(k), {}));
+  }
+  std::vector<PosedView> posed;
+  for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(state.range(0)); ++i) {
+    posed.push_back({office().T_world_camera(i), &views[RenderedOffice::at_step(i)]});
+  }
+  std::size_t points = 0;
+  for (auto iteration : state) points = static_map(posed, office().camera(), config).size();
+  state.counters["points"] = static_cast<double>(points);
+}
+
+BENCHMARK(keep_view)->Unit(benchmark::kMillisecond);
+BENCHMARK(assemble_static_map)->Arg(20)->Arg(100)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace stillmap
