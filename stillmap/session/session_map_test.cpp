@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/session/session_map.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "stillmap/core/se3.hpp"
+
+namespace stillmap {
+namespace {
+
+using testing::ElementsAre;
+
+Eigen::Isometry3d at(double x, double y = 0, double z = 0) {
+  return Eigen::Isometry3d(Eigen::Translation3d(x, y, z));
+}
+
+Stamp stamp(int seconds) {
+  return {static_cast<double>(seconds), std::to_string(seconds)};
+}
+
+// Turned by a quarter about z: x goes to y.
+Eigen::Isometry3d quarter_turn_at(double x) {
+  const double half = std::numbers::pi / 4;
+  return make_pose(Eigen::Quaterniond(std::cos(half), 0, 0, std::sin(half)), {x, 0, 0});
+}
+
+// Key frames 0 (world 0), 1 (world 3), 2 (world 3, dropped, fixed to 1), 3 (world 0).
+class SessionMap : public testing::Test {
+ protected:
+  SessionMap() {
+    add_keyframe(0, at(1));
+    add_keyframe(3, quarter_turn_at(10));
+    add_keyframe(3, at(10, 5));
+    add_keyframe(0, at(2));
+    session_.map.remove_keyframe(KeyframeId(2), KeyframeId(1));
+  }
+
+  void add_keyframe(std::uint32_t world, const Eigen::Isometry3d& T_world_camera) {
+    Keyframe keyframe;
+    keyframe.world = WorldId(world);
+    keyframe.stamp = stamp(static_cast<int>(session_.map.keyframes().size()) * 100);
+    keyframe.T_world_camera = T_world_camera;
+    keyframe.features = std::make_shared<const Features>();
+    session_.map.add_keyframe(std::move(keyframe));
+  }
+
+  void add_frame(std::uint32_t reference, const Eigen::Isometry3d& T_reference_frame) {
+    const int number = static_cast<int>(session_.frames.size());
+    session_.frames.push_back({stamp(number), KeyframeId(reference), T_reference_frame});
+  }
+
+  static std::vector<std::string> stamps(const Trajectory& trajectory) {
+    std::vector<std::string> texts;
+    for (const StampedPose& pose : trajectory) texts.push_back(pose.stamp.text);
+    return texts;
+  }
+
+  Session session_{{}, "", Map({1.0F}), {}, {}, {}};
+};
+
+TEST_F(SessionMap, FrameStandsWhereItsKeyFrameIs) {
+  add_frame(1, at(0.5));
+  const Eigen::Isometry3d T = T_world_frame(session_, session_.frames[0]);
+  EXPECT_TRUE(T.translation().isApprox(Eigen::Vector3d(10, 0.5, 0), 1e-12));
+  EXPECT_EQ(world_of(session_, session_.frames[0]), WorldId(3));
+}
+
+TEST_F(SessionMap, FrameOfADroppedKeyFrameMovesWithItsAnchor) {
+  add_frame(2, at(0, 0, 1));
+  EXPECT_EQ(world_of(session_, session_.frames[0]), WorldId(3));
+  EXPECT_TRUE(T_world_frame(session_, session_.frames[0])
+                  .translation()
+                  .isApprox(Eigen::Vector3d(10, 5, 1), 1e-12));
+  // Key frame 2 was 5 along what the anchor has as its x axis.
+  session_.map.set_pose(KeyframeId(1), at(20));
+  EXPECT_TRUE(T_world_frame(session_, session_.frames[0])
+                  .translation()
+                  .isApprox(Eigen::Vector3d(25, 0, 1), 1e-12));
+}
+
+TEST_F(SessionMap, MainWorldHasMostFrames) {
+  EXPECT_FALSE(main_world(session_).valid());
+  add_frame(0, at(0));
+  add_frame(3, at(0));
+  add_frame(1, at(0));
+  EXPECT_EQ(main_world(session_), WorldId(0));
+  add_frame(2, at(0));
+  EXPECT_EQ(main_world(session_), WorldId(0));  // two each: the lowest
+  EXPECT_EQ(main_world(session_, 1), WorldId(3));
+  EXPECT_FALSE(main_world(session_, 4).valid());
+  EXPECT_FALSE(main_world(session_, 5).valid());
+}
+
+TEST_F(SessionMap, TrajectoriesAreOfOneWorld) {
+  add_frame(0, at(0.25));
+  add_frame(1, at(0));
+  add_frame(3, at(0));
+  add_frame(2, at(0));
+  EXPECT_THAT(stamps(trajectory_in(session_, WorldId(0))), ElementsAre("0", "2"));
+  EXPECT_THAT(stamps(trajectory_in(session_, WorldId(0), 1)), ElementsAre("2"));
+  EXPECT_THAT(stamps(trajectory_in(session_, WorldId(3))), ElementsAre("1", "3"));
+  EXPECT_TRUE(trajectory_in(session_, WorldId{}).empty());
+  EXPECT_EQ(trajectory_in(session_, WorldId(0))[0].T_world_camera.translation().x(), 1.25);
+  EXPECT_THAT(stamps(keyframes_in(session_, WorldId(0))), ElementsAre("0", "300"));
+  EXPECT_THAT(stamps(keyframes_in(session_, WorldId(3))), ElementsAre("100"));
+  EXPECT_EQ(keyframes_in(session_, WorldId(0))[1].T_world_camera.translation().x(), 2);
+}
+
+}  // namespace
+}  // namespace stillmap
