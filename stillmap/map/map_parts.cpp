@@ -43,9 +43,9 @@ class PartsCheck {
     const std::vector<float>& scales = parts_.level_scales;
     require(!scales.empty() && scales.size() <= 256 && are_numbers(scales) && scales.front() > 0 &&
                 std::ranges::is_sorted(scales),
-            "the scales of the pyramid's levels");
+            "scales of the pyramid's levels");
     require(parts_.next_keyframe.value <= kMaxId && parts_.next_landmark.value <= kMaxId,
-            "the next ids");
+            "next ids");
   }
 
   void check_keyframes() const {
@@ -57,7 +57,7 @@ class PartsCheck {
       before = keyframe.id;
       require(keyframe.world.value < kMaxId, what, "its world");
       require(is_rigid(keyframe.T_world_camera), what, "its pose");
-      require(std::isfinite(keyframe.stamp.seconds), what, "its stamp");
+      require(is_stamp(keyframe.stamp), what, "its stamp");
       require(keyframe.features != nullptr, what, "its features");
       check_features(*keyframe.features, what);
       worlds.insert(keyframe.world);
@@ -65,7 +65,7 @@ class PartsCheck {
         require(with_origin.insert(keyframe.world).second, what, "a second origin of its world");
       }
     }
-    require(worlds == with_origin, "a world without an origin");
+    require(worlds == with_origin, "worlds: one has no origin");
   }
 
   void check_dropped() const {
@@ -107,7 +107,7 @@ class PartsCheck {
  private:
   void require(bool holds, std::string_view what, std::string_view thing = "") const {
     if (holds) return;
-    throw Error("{}: damaged: {}{}{} cannot be", place_, what, thing.empty() ? "" : ": ", thing);
+    throw Error("{}: invalid {}{}{}", place_, what, thing.empty() ? "" : ": ", thing);
   }
 
   template <class AnyId>
@@ -148,7 +148,7 @@ class PartsCheck {
     for (std::size_t start = 0; start < dropped.size(); ++start) {
       way.clear();
       for (std::size_t i = start; state[i] != 2;) {
-        const std::string_view what = "the anchor of a dropped key frame";
+        const std::string_view what = "anchor of a dropped key frame";
         require(state[i] == 0, what, "a circle");
         state[i] = 1;
         way.push_back(i);
@@ -187,6 +187,11 @@ bool is_rigid(const Eigen::Isometry3d& T) {
          R.determinant() > 0;
 }
 
+bool is_stamp(const Stamp& stamp) {
+  return std::isfinite(stamp.seconds) && stamp.text.size() <= 64 &&
+         std::ranges::all_of(stamp.text, [](char c) { return c > ' ' && c < '\x7f'; });
+}
+
 void check_parts(const MapParts& parts, const std::string& place) {
   const PartsCheck check(parts, place);
   check.check_levels();
@@ -205,12 +210,13 @@ MapParts linked(MapParts parts, const std::string& place) {
           std::ranges::lower_bound(parts.keyframes, observation.keyframe, {}, &Keyframe::id)
               ->landmarks[observation.feature];
       if (seen.valid()) {
-        throw Error("{}: damaged: feature {} of key frame {} sees two landmarks, {} and {}",
-                    place,
-                    observation.feature,
-                    observation.keyframe.value,
-                    seen.value,
-                    landmark.id.value);
+        throw Error(
+            "{}: invalid landmarks: feature {} of key frame {} sees two landmarks, {} and {}",
+            place,
+            observation.feature,
+            observation.keyframe.value,
+            seen.value,
+            landmark.id.value);
       }
       seen = landmark.id;
     }

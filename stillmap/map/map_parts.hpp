@@ -31,6 +31,9 @@ inline constexpr double kMaxCoordinate_m = 1e9;
 /// number.
 [[nodiscard]] bool is_rigid(const Eigen::Isometry3d& T);
 
+/// Whether the time is a number and the text, if any, one short word.
+[[nodiscard]] bool is_stamp(const Stamp& stamp);
+
 /// Throws Error, in one line that starts with `place`, for parts that are of no map: ids that are
 /// not in order or refer to nothing, poses that are none, arrays of different length, a world
 /// without its one origin, anchors that lead to no key frame, numbers that mean nothing. The key

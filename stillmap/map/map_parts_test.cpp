@@ -125,7 +125,7 @@ void expect_refused(const std::vector<Wrong>& wrongs) {
     } catch (const Error& error) {
       EXPECT_THAT(
           error.what(),
-          testing::MatchesRegex("a.stillmap: damaged: [^\n]*" + wrong.part_of_message + "[^\n]*"));
+          testing::MatchesRegex("a.stillmap: invalid [^\n]*" + wrong.part_of_message + "[^\n]*"));
     }
   }
 }
@@ -137,12 +137,13 @@ TEST(MapParts, WrongKeyframesAreRefused) {
       {"key frame 5: its id", [](P p) { p.next_keyframe = KeyframeId(5); }},
       {"key frame 1: its world", [](P p) { p.keyframes[1].world = WorldId{}; }},
       {"key frame 1: a second origin", [](P p) { p.keyframes[1].is_origin = true; }},
-      {"a world without an origin", [](P p) { p.keyframes[2].is_origin = false; }},
+      {"worlds: one has no origin", [](P p) { p.keyframes[2].is_origin = false; }},
       {"key frame 1: its pose", [](P p) { p.keyframes[1].T_world_camera(0, 3) = kNaN; }},
       {"key frame 1: its pose", [](P p) { p.keyframes[1].T_world_camera(0, 3) = 1e10; }},
       {"key frame 1: its pose", [](P p) { p.keyframes[1].T_world_camera(1, 1) += 1e-5; }},
       {"key frame 1: its pose", [](P p) { p.keyframes[1].T_world_camera.linear() *= -1; }},
       {"key frame 1: its stamp", [](P p) { p.keyframes[1].stamp.seconds = kNaN; }},
+      {"key frame 1: its stamp", [](P p) { p.keyframes[1].stamp.text = "1\n2"; }},
       {"key frame 1: its features", [](P p) { p.keyframes[1].features = nullptr; }},
       {"key frame 1: arrays",
        [](P p) { spoil(p.keyframes[1], [](Features& f) { f.depth_m.pop_back(); }); }},
