@@ -19,8 +19,8 @@ namespace stillmap {
 [[nodiscard]] MapParts decode_map_head(ByteReader content);
 
 [[nodiscard]] ByteWriter encode(const Keyframe& keyframe);
-/// Without its grid of features and list of landmarks, which are made anew.
-[[nodiscard]] Keyframe decode_keyframe(ByteReader content);
+/// The grid of its features is made anew. Without its list of landmarks.
+[[nodiscard]] Keyframe decode_keyframe(ByteReader content, const CameraModel& camera);
 
 [[nodiscard]] ByteWriter encode(std::span<const Landmark> landmarks);
 [[nodiscard]] std::vector<Landmark> decode_landmarks(ByteReader content);

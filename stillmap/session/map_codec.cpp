@@ -115,7 +115,7 @@ ByteWriter encode(const Keyframe& keyframe) {
   return out;
 }
 
-Keyframe decode_keyframe(ByteReader content) {
+Keyframe decode_keyframe(ByteReader content, const CameraModel& camera) {
   Keyframe keyframe;
   keyframe.id = take_id<KeyframeId>(content);
   keyframe.frame = take_id<FrameId>(content);
@@ -123,8 +123,10 @@ Keyframe decode_keyframe(ByteReader content) {
   keyframe.is_origin = content.flag();
   keyframe.stamp = take_stamp(content);
   keyframe.T_world_camera = content.pose();
-  keyframe.features = std::make_shared<const Features>(take_features(content));
+  Features features = take_features(content);
   content.finish();
+  features.grid = FeatureGrid(features.px, camera.width_px, camera.height_px);
+  keyframe.features = std::make_shared<const Features>(std::move(features));
   return keyframe;
 }
 

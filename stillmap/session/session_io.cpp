@@ -33,7 +33,8 @@ constexpr std::size_t kLandmarksTogether = 65536;
 void write_parts(const SessionParts& parts,
                  const SectionWriter::Sink& sink,
                  const std::string& place) {
-  check_parts(parts, place);
+  check_parts(parts.map, place);
+  check_records(parts, place);
   SectionWriter out(sink);
   out.write(kCamera, encode(parts.camera), place);
   out.write(kConfig, encode_text(parts.config_yaml), place);
@@ -77,11 +78,7 @@ std::vector<Keyframe> read_keyframes(SectionReader& in, const CameraModel& camer
     ByteReader content = in.read(kKeyframe);
     bytes += content.size();
     check_grid_memory(camera, keyframes.size() + 1, bytes, in.file());
-    Keyframe keyframe = decode_keyframe(std::move(content));
-    Features features = *keyframe.features;
-    features.grid = FeatureGrid(features.px, camera.width_px, camera.height_px);
-    keyframe.features = std::make_shared<const Features>(std::move(features));
-    keyframes.push_back(std::move(keyframe));
+    keyframes.push_back(decode_keyframe(std::move(content), camera));
   }
   return keyframes;
 }
@@ -126,7 +123,7 @@ Session read(SectionReader in, const SessionReadOptions& options) {
   parts.frames = decode_frames(in.read(kFrames));
   parts.views = read_views(in, options);
   in.finish();
-  check_parts(parts, in.file());
+  check_records(parts, in.file());
   return {std::move(parts.camera),
           std::move(parts.config_yaml),
           Map::from_parts(std::move(parts.map), in.file()),

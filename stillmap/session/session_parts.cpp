@@ -101,12 +101,11 @@ SessionParts parts_of(const Session& session) {
           session.views};
 }
 
-void check_parts(const SessionParts& parts, const std::string& place) {
+void check_records(const SessionParts& parts, const std::string& place) {
   check_camera(parts.camera, place);
   if (parts.config_yaml.size() > kMaxConfigSize) {
     throw Error("{}: invalid settings: {} bytes long", place, parts.config_yaml.size());
   }
-  check_parts(parts.map, place);
   check_loops(parts, place);
   check_frames(parts, place);
   check_views(parts, place);

@@ -21,8 +21,8 @@ struct SessionParts {
 
 [[nodiscard]] SessionParts parts_of(const Session& session);
 
-/// Throws Error, in one line that starts with `place`, for parts of no session: those of no map,
-/// and records that refer to nothing or hold what means nothing.
-void check_parts(const SessionParts& parts, const std::string& place);
+/// Throws Error, in one line that starts with `place`, for all that is not the map, if it refers to
+/// nothing or holds what means nothing. See check_parts() and Map::from_parts for the map itself.
+void check_records(const SessionParts& parts, const std::string& place);
 
 }  // namespace stillmap
