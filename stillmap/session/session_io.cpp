@@ -29,6 +29,32 @@ constexpr std::string_view kView = "VIEW";  // each its own
 
 constexpr std::size_t kLandmarksTogether = 65536;
 
+// A large image has a grid of many cells even for few features: the memory for it is to be in
+// proportion to the file.
+void check_grid_memory(const CameraModel& camera,
+                       std::size_t keyframes,
+                       std::size_t bytes,
+                       const std::string& place) {
+  const std::size_t cells = (static_cast<std::size_t>(camera.width_px) / 16 + 1) *
+                            (static_cast<std::size_t>(camera.height_px) / 16 + 1);
+  if (keyframes * cells > (std::size_t{1} << 26U) + 16 * bytes) {
+    throw Error("{}: invalid key frames: hardly any features in images of {} x {}",
+                place,
+                camera.width_px,
+                camera.height_px);
+  }
+}
+
+void write_keyframes(SectionWriter& out, const SessionParts& parts, const std::string& place) {
+  std::size_t keyframes = 0, bytes = 0;
+  for (const Keyframe& keyframe : parts.map.keyframes) {
+    const ByteWriter content = encode(keyframe);
+    bytes += content.bytes().size();
+    check_grid_memory(parts.camera, ++keyframes, bytes, place);
+    out.write(kKeyframe, content, place);
+  }
+}
+
 // `place` begins messages.
 void write_parts(const SessionParts& parts,
                  const SectionWriter::Sink& sink,
@@ -39,9 +65,7 @@ void write_parts(const SessionParts& parts,
   out.write(kCamera, encode(parts.camera), place);
   out.write(kConfig, encode_text(parts.config_yaml), place);
   out.write(kMapHead, encode_map_head(parts.map), place);
-  for (const Keyframe& keyframe : parts.map.keyframes) {
-    out.write(kKeyframe, encode(keyframe), place);
-  }
+  write_keyframes(out, parts, place);
   std::span<const Landmark> landmarks = parts.map.landmarks;
   while (!landmarks.empty()) {
     const std::size_t size = std::min(kLandmarksTogether, landmarks.size());
@@ -53,22 +77,6 @@ void write_parts(const SessionParts& parts,
   out.write(kFrames, encode(parts.frames), place);
   for (const ViewRecord& view : parts.views) out.write(kView, encode(view), place);
   out.finish();
-}
-
-// A large image has a grid of many cells even for few features: the memory for it is to be in
-// proportion to the file.
-void check_grid_memory(const CameraModel& camera,
-                       std::size_t keyframes,
-                       std::size_t bytes,
-                       const std::string& file) {
-  const std::size_t cells = (static_cast<std::size_t>(camera.width_px) / 16 + 1) *
-                            (static_cast<std::size_t>(camera.height_px) / 16 + 1);
-  if (keyframes * cells > (std::size_t{1} << 26U) + 16 * bytes) {
-    throw Error("{}: invalid key frames: hardly any features in images of {} x {}",
-                file,
-                camera.width_px,
-                camera.height_px);
-  }
 }
 
 std::vector<Keyframe> read_keyframes(SectionReader& in, const CameraModel& camera) {

@@ -15,7 +15,7 @@ namespace stillmap {
 struct TestSessionSize {
   int keyframes = 6;  ///< ever; at least 5, two of which are dropped
   std::uint32_t features = kFeaturesPerKeyframe;
-  int operations = 150;
+  int operations = 150;  ///< on the map's landmarks; for fewer features it has one for each
   int frames = 9;
   int points = 5;  ///< of a view
 };
@@ -79,7 +79,15 @@ inline Map map(const TestSessionSize& size, std::mt19937& rng) {
     next.world = WorldId(i < 4 ? 0 : 2);
     map.add_keyframe(std::move(next));
   }
-  for (int i = 0; i < size.operations; ++i) random_operation(map, {}, rng)(map);
+  if (size.features >= kFeaturesPerKeyframe) {  // which the operations name
+    for (int i = 0; i < size.operations; ++i) random_operation(map, {}, rng)(map);
+  } else {
+    for (std::uint32_t i = 0; i < size.features; ++i) {
+      const LandmarkId id = map.add_landmark(random_point(rng), {KeyframeId(0), i});
+      map.add_observation(id, {KeyframeId(1 + i % 4), i});
+      map.refresh(id);
+    }
+  }
   map.remove_keyframe(KeyframeId(3), KeyframeId(2));
   map.remove_keyframe(KeyframeId(2), KeyframeId(1));
   for (const LandmarkId id : map.landmark_ids()) {
