@@ -18,8 +18,7 @@ namespace {
 using testing::HasSubstr;
 using testing::MatchesRegex;
 
-constexpr TestSessionSize kSmall{
-    .keyframes = 5, .features = 3, .frames = 5, .points = 2};
+constexpr TestSessionSize kSmall{.keyframes = 5, .features = 3, .frames = 5, .points = 2};
 
 // The message, or nothing when it can be read; anything but an Error fails the test.
 std::string problem(const std::string& bytes) {
