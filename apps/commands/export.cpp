@@ -210,9 +210,9 @@ void add_export_command(CLI::App& app, CommandResult& /*result*/) {
       app.add_subcommand("export", "The map of a finished run in the formats of other programs");
   const auto arguments = std::make_shared<ExportArguments>();
   command
-      ->add_option("RUN_DIR|FILE.stillmap",
+      ->add_option("SOURCE",
                    arguments->source,
-                   "the --out folder of `stillmap run`, or a session that it has saved")
+                   "the --out folder of `stillmap run`, or the map.stillmap in it")
       ->required();
   for (const FormatOption& option : format_options()) {
     command->add_option(option.name, (*arguments).*option.file, option.help)->type_name("F");
