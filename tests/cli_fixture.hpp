@@ -7,6 +7,7 @@
 #include <sstream>
 #include <string>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -39,6 +40,15 @@ class Cli : public testing::Test {
         ("{ " + command + "; } > " + path("stdout.txt") + " 2> " + path("stderr.txt")).c_str());
     return {
         WIFEXITED(status) ? WEXITSTATUS(status) : -1, content("stdout.txt"), content("stderr.txt")};
+  }
+
+  // Exit code 2, nothing on standard output, and one line that has `part` in it.
+  void expect_refused(const std::string& arguments, const std::string& part) const {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments;
+    EXPECT_EQ(outcome.out, "") << arguments;
+    EXPECT_THAT(outcome.err, testing::MatchesRegex("stillmap: [^\n]*\n")) << arguments;
+    EXPECT_THAT(outcome.err, testing::HasSubstr(part)) << arguments;
   }
 
   void write(const std::string& name, const std::string& text) const {

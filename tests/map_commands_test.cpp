@@ -17,7 +17,6 @@ namespace stillmap {
 namespace {
 
 using testing::HasSubstr;
-using testing::MatchesRegex;
 
 // Squares of 1 m, 2 cm apart, at depth z.
 PointCloud square(double z) {
@@ -50,14 +49,6 @@ class MapCommands : public Cli {
     const Outcome outcome = run(arguments + " --json");
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     return nlohmann::json::parse(outcome.out);
-  }
-
-  void expect_refused(const std::string& arguments, const std::string& part) const {
-    const Outcome outcome = run(arguments);
-    EXPECT_EQ(outcome.exit_code, 2) << arguments;
-    EXPECT_EQ(outcome.out, "") << arguments;
-    EXPECT_THAT(outcome.err, MatchesRegex("stillmap: [^\n]*\n")) << arguments;
-    EXPECT_THAT(outcome.err, HasSubstr(part)) << arguments;
   }
 };
 

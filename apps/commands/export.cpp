@@ -9,15 +9,14 @@
 #include <fmt/format.h>
 
 #include "apps/commands.hpp"
+#include "apps/commands/export_source.hpp"
 #include "stillmap/core/error.hpp"
 #include "stillmap/formats/floor_plane.hpp"
 #include "stillmap/formats/occupancy_grid.hpp"
 #include "stillmap/formats/octree.hpp"
 #include "stillmap/formats/pcd.hpp"
 #include "stillmap/io/atomic_file.hpp"
-#include "stillmap/io/camera_io.hpp"
 #include "stillmap/io/ply.hpp"
-#include "stillmap/io/trajectory_io.hpp"
 
 namespace stillmap {
 namespace {
@@ -25,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct ExportArguments {
-  std::string run_dir;
+  std::string source;
   std::string ply;
   std::string ply_ascii;
   std::string pcd;
@@ -78,7 +77,9 @@ void check_arguments(const ExportArguments& arguments) {
     if (std::ranges::find(targets, target) != targets.end()) {
       throw Error("{} {}: another option names the same file", option.name, file.string());
     }
-    if (target == fs::absolute(fs::path(arguments.run_dir) / "map.ply").lexically_normal()) {
+    const fs::path source = arguments.source;
+    for (const fs::path& own : {source, source / "map.ply"}) {
+      if (target != fs::absolute(own).lexically_normal()) continue;
       throw Error("{} {}: the run's own map; choose another name", option.name, file.string());
     }
     targets.push_back(target);
@@ -92,41 +93,6 @@ void check_arguments(const ExportArguments& arguments) {
     throw Error(
         "--min-height {} is not below --max-height {}", arguments.band.min_m, arguments.band.max_m);
   }
-}
-
-// What a run has left behind, as far as the exports need it.
-struct FinishedRun {
-  PointCloud map;
-  std::vector<Eigen::Isometry3d> T_world_keyframe;
-  std::optional<CameraModel> camera;  // where rays are needed
-};
-
-CameraModel run_camera(const ExportArguments& arguments) {
-  if (!arguments.camera.empty()) return camera_by_name(arguments.camera);
-  const fs::path file = fs::path(arguments.run_dir) / "camera.yaml";
-  if (!path_exists(file)) {
-    throw Error("{}: missing, as in folders of older versions; run again, or give --camera",
-                file.string());
-  }
-  return read_camera_yaml(file);
-}
-
-FinishedRun read_run(const ExportArguments& arguments) {
-  const fs::path folder = arguments.run_dir;
-  if (!path_exists(folder / "map.ply") || !path_exists(folder / "keyframes.txt")) {
-    throw Error(
-        "{}: not the folder of a finished run: expected map.ply and keyframes.txt in it, as "
-        "`stillmap run --out` writes them",
-        folder.string());
-  }
-  FinishedRun run;
-  run.map = read_ply(folder / "map.ply");
-  if (run.map.empty()) throw Error("{}: no points", (folder / "map.ply").string());
-  for (const StampedPose& keyframe : read_trajectory(folder / "keyframes.txt")) {
-    run.T_world_keyframe.push_back(keyframe.T_world_camera);
-  }
-  if (!arguments.octomap.empty() || !arguments.grid.empty()) run.camera = run_camera(arguments);
-  return run;
 }
 
 Eigen::Isometry3d find_floor_frame(const FinishedRun& run) {
@@ -180,7 +146,8 @@ void add_grid_files(std::vector<FileContent>& files,
 
 void run_export(const ExportArguments& arguments) {
   check_arguments(arguments);
-  FinishedRun run = read_run(arguments);
+  FinishedRun run = read_finished_run(
+      arguments.source, arguments.camera, !arguments.octomap.empty() || !arguments.grid.empty());
   std::vector<FileContent> files;
   Eigen::Isometry3d T_grid_map = Eigen::Isometry3d::Identity();
   if (!arguments.grid.empty() || arguments.upright) T_grid_map = find_floor_frame(run);
@@ -242,7 +209,10 @@ void add_export_command(CLI::App& app, CommandResult& /*result*/) {
   CLI::App* command =
       app.add_subcommand("export", "The map of a finished run in the formats of other programs");
   const auto arguments = std::make_shared<ExportArguments>();
-  command->add_option("RUN_DIR", arguments->run_dir, "the --out folder of `stillmap run`")
+  command
+      ->add_option("SOURCE",
+                   arguments->source,
+                   "the --out folder of `stillmap run`, or the map.stillmap in it")
       ->required();
   for (const FormatOption& option : format_options()) {
     command->add_option(option.name, (*arguments).*option.file, option.help)->type_name("F");
@@ -253,6 +223,7 @@ void add_export_command(CLI::App& app, CommandResult& /*result*/) {
       "  stillmap export result --pcd map.pcd --ply-ascii map.ply\n"
       "  stillmap export result --octomap map.bt --resolution 0.03 --upright\n"
       "  stillmap export result --grid room.yaml --min-height 0.05 --max-height 1.2\n"
+      "  stillmap export result/map.stillmap --ply map.ply\n"
       "All files are written, or, when anything fails, none. docs/formats.md describes them.");
   command->callback([arguments] { run_export(*arguments); });
 }

@@ -166,7 +166,9 @@ class RangeCheck {
   /// Unknown out of the image.
   [[nodiscard]] RangeCell cell_at(float u, float v) const {
     if (!(u >= 0 && v >= 0 && u < width_ && v < height_)) return {};
-    return range_.at(static_cast<int>(v * scale_), static_cast<int>(u * scale_));
+    // Just below the border the product may round up to it.
+    return range_.at(std::min(static_cast<int>(v * scale_), range_.rows - 1),
+                     std::min(static_cast<int>(u * scale_), range_.columns - 1));
   }
 
   [[nodiscard]] bool is_here(RangeCell cell, float z) const {

@@ -59,6 +59,11 @@ template <class Config>
 /// read before the mistake are set by then.
 void load_yaml(std::span<const FieldRef> fields, const std::filesystem::path& file);
 
+/// The same from the text of such a file; `name` stands for the file's in messages.
+void load_yaml_text(std::span<const FieldRef> fields,
+                    std::string_view text,
+                    const std::string& name);
+
 /// Sets one value from the "key=value" of the command line's --set, as strictly as load_yaml.
 void set_value(std::span<const FieldRef> fields, std::string_view assignment);
 

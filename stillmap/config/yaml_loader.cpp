@@ -25,6 +25,7 @@ namespace {
 
 constexpr std::size_t kMaxBytes = 1U << 20U;
 
+// At most one byte more than is allowed.
 std::string read_capped(const std::filesystem::path& file) {
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored)) {
@@ -39,20 +40,15 @@ std::string read_capped(const std::filesystem::path& file) {
   if (stream.bad())
     throw Error("{}: cannot be read: {}", file.string(), std::generic_category().message(errno));
   bytes.resize(static_cast<std::size_t>(stream.gcount()));
-  if (bytes.size() > kMaxBytes) {
-    throw Error("{}: larger than 1 MiB, not a configuration", file.string());
-  }
   return bytes;
 }
 
-[[noreturn]] void fail_at(const std::filesystem::path& file,
-                          std::string_view before,
-                          std::string_view text) {
-  throw Error("{}:{}: {}", file.string(), 1 + std::ranges::count(before, '\n'), text);
+[[noreturn]] void fail_at(const std::string& file, std::string_view before, std::string_view text) {
+  throw Error("{}:{}: {}", file, 1 + std::ranges::count(before, '\n'), text);
 }
 
 // Refuses what the parser would pass over in silence: bytes that are no text, and directives.
-void check_text(const std::filesystem::path& file, std::string_view text) {
+void check_text(const std::string& file, std::string_view text) {
   const std::size_t good = text_prefix(text);
   if (good != text.size()) {
     const auto byte = static_cast<unsigned char>(text[good]);
@@ -185,19 +181,26 @@ class FieldSetter final : public YAML::EventHandler {
 
 }  // namespace
 
-void load_yaml(std::span<const FieldRef> fields, const std::filesystem::path& file) {
-  const std::string text = without_end_space(read_capped(file));
-  if (text.empty()) throw Error("{}: empty, expected a YAML file", file.string());
-  check_text(file, text);
-  std::istringstream stream(text);
-  FieldSetter setter(fields, file.string());
+void load_yaml_text(std::span<const FieldRef> fields,
+                    std::string_view text,
+                    const std::string& name) {
+  if (text.size() > kMaxBytes) throw Error("{}: larger than 1 MiB, not a configuration", name);
+  const std::string yaml = without_end_space(std::string(text));
+  if (yaml.empty()) throw Error("{}: empty, expected a YAML file", name);
+  check_text(name, yaml);
+  std::istringstream stream(yaml);
+  FieldSetter setter(fields, name);
   try {
     YAML::Parser parser(stream);
     while (parser.HandleNextDocument(setter)) {
     }
   } catch (const YAML::Exception& error) {
-    throw Error("{}:{}: not valid YAML: {}", file.string(), error.mark.line + 1, error.msg);
+    throw Error("{}:{}: not valid YAML: {}", name, error.mark.line + 1, error.msg);
   }
+}
+
+void load_yaml(std::span<const FieldRef> fields, const std::filesystem::path& file) {
+  load_yaml_text(fields, read_capped(file), file.string());
 }
 
 }  // namespace stillmap

@@ -65,6 +65,17 @@ std::string repeated(std::string_view text, int times) {
   return result;
 }
 
+TEST_F(LoadYaml, TextIsReadAsAFileIs) {
+  Config config;
+  EXPECT_THROW(load_yaml_text(list_fields(config), "nothing: 1", "x"), Error);
+  EXPECT_THROW(load_yaml_text(list_fields(config), "", "x"), Error);
+  EXPECT_THROW(load_yaml_text(list_fields(config), std::string((1U << 20U) + 1, ' '), "x"), Error);
+  const std::string text = dump_yaml(list_fields(config));
+  Config again;
+  load_yaml_text(list_fields(again), text, "x");
+  EXPECT_EQ(dump_yaml(list_fields(again)), text);
+}
+
 TEST_F(LoadYaml, SetsWhatTheFileNamesAndNothingElse) {
   const Config config = load(
       "# a comment\r\n"

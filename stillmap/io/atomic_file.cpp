@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <deque>
-#include <optional>
+#include <memory>
 #include <system_error>
 #include <utility>
 
@@ -99,30 +99,6 @@ OpenTemporary open_temporary(const fs::path& path) {
               path.string());
 }
 
-// A file's new content under a temporary name, which goes unless it takes the file's.
-class Replacement {
- public:
-  Replacement(fs::path asked_for, fs::path target, std::string_view bytes)
-      : asked_for_(std::move(asked_for)), target_(std::move(target)) {
-    OpenTemporary opened = open_temporary(target_);
-    temporary_.emplace(opened.path);
-    write_all(opened.file, bytes, asked_for_);
-    close_checked(opened.file, asked_for_);
-  }
-
-  void take_place() {
-    if (::rename(temporary_->path().c_str(), target_.c_str()) != 0) {
-      throw Error("cannot write {}: {}", asked_for_.string(), reason(errno));
-    }
-    temporary_->keep();
-  }
-
- private:
-  fs::path asked_for_;
-  fs::path target_;
-  std::optional<TemporaryFile> temporary_;
-};
-
 // Where the bytes go: what `path` links to.
 fs::path checked_target(const fs::path& path) {
   std::error_code ignored;
@@ -143,20 +119,69 @@ bool is_device(const fs::path& target) {
 
 }  // namespace
 
+// A file's new content under a temporary name, which goes unless it takes the file's.
+class AtomicFile::Replacement {
+ public:
+  Replacement(fs::path asked_for, fs::path target)
+      : asked_for_(std::move(asked_for)),
+        target_(std::move(target)),
+        opened_(open_temporary(target_)),
+        temporary_(opened_.path) {}
+
+  void write(std::string_view bytes) { write_all(opened_.file, bytes, asked_for_); }
+  void close() { close_checked(opened_.file, asked_for_); }
+
+  void take_place() {
+    if (::rename(temporary_.path().c_str(), target_.c_str()) != 0) {
+      throw Error("cannot write {}: {}", asked_for_.string(), reason(errno));
+    }
+    temporary_.keep();
+  }
+
+ private:
+  fs::path asked_for_;
+  fs::path target_;
+  OpenTemporary opened_;
+  TemporaryFile temporary_;
+};
+
+AtomicFile::AtomicFile(const fs::path& path) {
+  const fs::path target = checked_target(path);
+  if (is_device(target)) throw Error("cannot write {}: it is a device", path.string());
+  replacement_ = std::make_unique<Replacement>(path, target);
+}
+
+AtomicFile::~AtomicFile() = default;
+
+void AtomicFile::write(std::string_view bytes) {
+  replacement_->write(bytes);
+}
+
+void AtomicFile::close() {
+  replacement_->close();
+}
+
+void AtomicFile::take_place() {
+  replacement_->take_place();
+}
+
 void write_file_atomically(const fs::path& path, std::string_view bytes) {
   const fs::path target = checked_target(path);
   if (is_device(target)) return write_directly(target, bytes);
-  Replacement(path, target, bytes).take_place();
+  AtomicFile file(path);
+  file.write(bytes);
+  file.close();
+  file.take_place();
 }
 
 void write_files_atomically(std::span<const FileContent> files) {
-  std::deque<Replacement> replacements;
+  std::deque<AtomicFile> replacements;
   for (const FileContent& file : files) {
-    const fs::path target = checked_target(file.path);
-    if (is_device(target)) throw Error("cannot write {}: it is a device", file.path.string());
-    replacements.emplace_back(file.path, target, file.bytes);
+    AtomicFile& replacement = replacements.emplace_back(file.path);
+    replacement.write(file.bytes);
+    replacement.close();
   }
-  for (Replacement& replacement : replacements) replacement.take_place();
+  for (AtomicFile& replacement : replacements) replacement.take_place();
 }
 
 std::string read_file(const fs::path& path, std::size_t max_bytes) {

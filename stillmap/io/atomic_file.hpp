@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -24,6 +25,27 @@ struct FileContent {
 /// folders, and only when all are there the names are taken, one after the other. Throws Error as
 /// write_file_atomically does, and for a device.
 void write_files_atomically(std::span<const FileContent> files);
+
+/// The same for a file that is written piece by piece. Until it takes its place, only a temporary
+/// file is there, which goes with this. All throw Error as write_file_atomically does.
+class AtomicFile {
+ public:
+  /// Throws Error for a device too.
+  explicit AtomicFile(const std::filesystem::path& path);
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+  ~AtomicFile();
+
+  void write(std::string_view bytes);
+  /// After the last write.
+  void close();
+  /// After close().
+  void take_place();
+
+ private:
+  class Replacement;
+  std::unique_ptr<Replacement> replacement_;
+};
 
 /// The whole content of a file. Throws Error when it cannot be read, is a folder, or is larger than
 /// `max_bytes`, before that much is allocated.

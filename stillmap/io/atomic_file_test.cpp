@@ -48,6 +48,29 @@ TEST(WriteFileAtomically, FollowsALink) {
   EXPECT_EQ(content_of(folder.path() / "real"), "new");
 }
 
+TEST(AtomicFile, IsThereAsAWholeOrNotAtAll) {
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "a.bin";
+  write_file_atomically(path, "old");
+  {
+    AtomicFile file(path);
+    file.write("new, ");
+    file.write("but given up");
+    EXPECT_EQ(content_of(path), "old");
+  }
+  EXPECT_EQ(files_in(folder.path()), 1U);
+  AtomicFile file(path);
+  file.write("new, ");
+  file.write(std::string("in\0two", 6));
+  file.close();
+  EXPECT_EQ(content_of(path), "old");
+  file.take_place();
+  EXPECT_EQ(content_of(path), "new, " + std::string("in\0two", 6));
+  EXPECT_EQ(files_in(folder.path()), 1U);
+  EXPECT_THROW(AtomicFile("/dev/null"), Error);
+  EXPECT_THROW(AtomicFile(folder.path()), Error);
+}
+
 TEST(WriteFilesAtomically, WritesAll) {
   const TemporaryFolder folder;
   write_file_atomically(folder.path() / "a", "old");

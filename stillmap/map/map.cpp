@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "stillmap/core/error.hpp"
 
@@ -44,6 +45,38 @@ std::size_t most_central(std::span<const Descriptor> descriptors) {
 }
 
 }  // namespace
+
+Map Map::from_parts(MapParts parts, const std::string& place) {
+  check_parts(parts, place);
+  parts = linked(std::move(parts), place);
+  Map map(std::move(parts.level_scales));
+  for (Keyframe& keyframe : parts.keyframes) {
+    const KeyframeId id = keyframe.id;
+    map.keyframes_.emplace_hint(map.keyframes_.end(), id, std::move(keyframe));
+  }
+  map.landmarks_.reserve(parts.landmarks.size());
+  for (Landmark& landmark : parts.landmarks) {
+    const LandmarkId id = landmark.id;
+    map.landmarks_.emplace(id, std::move(landmark));
+  }
+  map.dropped_keyframes_ = {parts.dropped_keyframes.begin(), parts.dropped_keyframes.end()};
+  map.next_keyframe_ = parts.next_keyframe;
+  map.next_landmark_ = parts.next_landmark;
+  return map;
+}
+
+MapParts Map::parts() const {
+  MapParts parts;
+  parts.level_scales = level_scales_;
+  parts.keyframes.reserve(keyframes_.size());
+  for (const auto& [id, keyframe] : keyframes_) parts.keyframes.push_back(keyframe);
+  parts.landmarks.reserve(landmarks_.size());
+  for (const LandmarkId id : landmark_ids()) parts.landmarks.push_back(landmarks_.at(id));
+  parts.dropped_keyframes = {dropped_keyframes_.begin(), dropped_keyframes_.end()};
+  parts.next_keyframe = next_keyframe_;
+  parts.next_landmark = next_landmark_;
+  return parts;
+}
 
 const Landmark* Map::find(LandmarkId id) const {
   const auto at = landmarks_.find(id);

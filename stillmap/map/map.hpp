@@ -10,6 +10,7 @@
 
 #include "stillmap/map/keyframe.hpp"
 #include "stillmap/map/landmark.hpp"
+#include "stillmap/map/map_parts.hpp"
 #include "stillmap/map/map_update.hpp"
 
 namespace stillmap {
@@ -27,6 +28,12 @@ class Map {
  public:
   /// `level_scales`: size of a pixel of each pyramid level, as the extractor has them.
   explicit Map(std::vector<float> level_scales) : level_scales_(std::move(level_scales)) {}
+
+  /// The map of these parts, whose key frames' lists of landmarks are made anew. They may come from
+  /// anywhere: throws Error, in one line that starts with `place`, for parts of no map.
+  [[nodiscard]] static Map from_parts(MapParts parts, const std::string& place);
+  /// A copy of what it consists of. Not for windows.
+  [[nodiscard]] MapParts parts() const;
 
   [[nodiscard]] const std::map<KeyframeId, Keyframe>& keyframes() const { return keyframes_; }
   [[nodiscard]] const Keyframe& keyframe(KeyframeId id) const { return keyframes_.at(id); }

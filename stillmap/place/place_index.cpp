@@ -89,7 +89,8 @@ PlaceIndex::Keys PlaceIndex::keys_of(std::span<const Descriptor> descriptors) co
   return result;
 }
 
-void PlaceIndex::add(KeyframeId keyframe, std::span<const Descriptor> descriptors) {
+std::uint32_t PlaceIndex::take_slot(const NewPlace& place) {
+  const auto& [keyframe, descriptors] = place;
   STILLMAP_CHECK(keyframe.valid() && !has(keyframe) && descriptors.size() <= 65535);
   if (free_slots_.empty()) {
     free_slots_.push_back(static_cast<std::uint32_t>(places_.size()));
@@ -99,12 +100,54 @@ void PlaceIndex::add(KeyframeId keyframe, std::span<const Descriptor> descriptor
   free_slots_.pop_back();
   slots_[keyframe] = slot;
   places_[slot] = {keyframe, {descriptors.begin(), descriptors.end()}};
+  return slot;
+}
+
+void PlaceIndex::add(KeyframeId keyframe, std::span<const Descriptor> descriptors) {
+  const std::uint32_t slot = take_slot({keyframe, descriptors});
   const Keys keys = keys_of(descriptors);
   const auto count = static_cast<std::size_t>(options_.keys);
   for (std::size_t k = 0; k < keys.keys.size(); ++k) {
     if (keys.distinctive[k] == 0) continue;
     buckets_[bucket(k % count, keys.keys[k])].push_back(
         {keys.keys[k], slot, static_cast<std::uint32_t>(k / count)});
+  }
+}
+
+void PlaceIndex::add(std::span<const NewPlace> places) {
+  std::vector<std::uint32_t> slots;
+  std::vector<Keys> keys;
+  for (const NewPlace& place : places) {
+    slots.push_back(take_slot(place));
+    keys.push_back(keys_of(place.descriptors));
+  }
+  for (std::size_t table = 0; table < static_cast<std::size_t>(options_.keys); ++table) {
+    add_to_table(table, slots, keys);
+  }
+}
+
+// One table after the other, for its buckets are near each other; and each bucket is made as large
+// as it becomes at once.
+void PlaceIndex::add_to_table(std::size_t table,
+                              std::span<const std::uint32_t> slots,
+                              std::span<const Keys> keys) {
+  const auto count = static_cast<std::size_t>(options_.keys);
+  const std::size_t first = bucket(table, 0);
+  std::vector<std::uint32_t> more(std::size_t{1} << kBucketBits, 0);
+  for (const Keys& of_place : keys) {
+    for (std::size_t k = table; k < of_place.keys.size(); k += count) {
+      if (of_place.distinctive[k] != 0) ++more[bucket(table, of_place.keys[k]) - first];
+    }
+  }
+  for (std::size_t b = 0; b < more.size(); ++b) {
+    if (more[b] > 0) buckets_[first + b].reserve(buckets_[first + b].size() + more[b]);
+  }
+  for (std::size_t p = 0; p < keys.size(); ++p) {
+    for (std::size_t k = table; k < keys[p].keys.size(); k += count) {
+      if (keys[p].distinctive[k] == 0) continue;
+      buckets_[bucket(table, keys[p].keys[k])].push_back(
+          {keys[p].keys[k], slots[p], static_cast<std::uint32_t>(k / count)});
+    }
   }
 }
 
@@ -184,8 +227,12 @@ std::vector<PlaceCandidate> PlaceIndex::query(std::span<const Descriptor> descri
 }
 
 PlaceIndex index_of(const Map& map) {
+  std::vector<PlaceIndex::NewPlace> places;
+  for (const auto& [id, keyframe] : map.keyframes()) {
+    places.push_back({id, keyframe.features->descriptors});
+  }
   PlaceIndex index;
-  for (const auto& [id, keyframe] : map.keyframes()) index.add(id, keyframe.features->descriptors);
+  index.add(places);
   return index;
 }
 

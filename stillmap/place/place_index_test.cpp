@@ -56,6 +56,31 @@ TEST(PlaceIndex, FindsAPlaceThatIsSeenAgain) {
   }
 }
 
+TEST(PlaceIndex, ManyAtOnceAreTheSameAsOneByOne) {
+  TestDice dice(9);
+  Filled one_by_one = fill(dice, 40);
+  std::vector<PlaceIndex::NewPlace> places;
+  for (std::uint32_t k = 0; k < 40; ++k) {
+    // They resemble each other, so that scores have many parts.
+    one_by_one.places[k] = seen_again(dice, one_by_one.places[k == 0 ? 0 : k - 1], 10, 30);
+    places.push_back({KeyframeId(k), one_by_one.places[k]});
+  }
+  one_by_one.index = PlaceIndex();
+  PlaceIndex at_once;
+  at_once.add(KeyframeId(0), places[0].descriptors);
+  at_once.add(std::span<const PlaceIndex::NewPlace>(places).subspan(1));
+  for (const PlaceIndex::NewPlace& place : places) {
+    one_by_one.index.add(place.keyframe, place.descriptors);
+  }
+  at_once.remove(KeyframeId(3));
+  one_by_one.index.remove(KeyframeId(3));
+  for (const Place& place : one_by_one.places) {
+    const std::vector<PlaceCandidate> found = at_once.query(place, 40);
+    EXPECT_GE(found.size(), 2U);
+    EXPECT_EQ(found, one_by_one.index.query(place, 40));
+  }
+}
+
 TEST(PlaceIndex, FindsNothingInAnUnknownPlace) {
   TestDice dice(2);
   const Filled filled = fill(dice, 50);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stillmap/session/session_map.hpp"
 
+#include <cmath>
 #include <numbers>
 #include <string>
 

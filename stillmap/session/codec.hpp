@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "stillmap/map/map_parts.hpp"
+#include "stillmap/session/bytes.hpp"
+#include "stillmap/session/session.hpp"
+
+namespace stillmap {
+
+// What a session consists of as bytes. encode() gives the content of a section; decode_*() reads it
+// to its end and throws Error when it is not of that form. What it means is checked elsewhere
+// (session_parts.hpp).
+
+/// The map's numbers that stand in no list.
+[[nodiscard]] ByteWriter encode_map_head(const MapParts& map);
+[[nodiscard]] MapParts decode_map_head(ByteReader content);
+
+[[nodiscard]] ByteWriter encode(const Keyframe& keyframe);
+/// The grid of its features is made anew. Without its list of landmarks.
+[[nodiscard]] Keyframe decode_keyframe(ByteReader content, const CameraModel& camera);
+
+[[nodiscard]] ByteWriter encode(std::span<const Landmark> landmarks);
+[[nodiscard]] std::vector<Landmark> decode_landmarks(ByteReader content);
+
+using DroppedKeyframes = std::vector<std::pair<KeyframeId, Anchor>>;
+[[nodiscard]] ByteWriter encode(const DroppedKeyframes& dropped);
+[[nodiscard]] DroppedKeyframes decode_dropped(ByteReader content);
+
+[[nodiscard]] ByteWriter encode(const CameraModel& camera);
+[[nodiscard]] CameraModel decode_camera(ByteReader content);
+
+[[nodiscard]] ByteWriter encode_text(const std::string& text);
+[[nodiscard]] std::string decode_text(ByteReader content);
+
+[[nodiscard]] ByteWriter encode(const std::vector<LoopEdge>& loops);
+[[nodiscard]] std::vector<LoopEdge> decode_loops(ByteReader content);
+
+[[nodiscard]] ByteWriter encode(const std::vector<FrameRecord>& frames);
+[[nodiscard]] std::vector<FrameRecord> decode_frames(ByteReader content);
+
+[[nodiscard]] ByteWriter encode(const ViewRecord& record);
+[[nodiscard]] ViewRecord decode_view(ByteReader content);
+
+// Shared by several of them.
+void put(ByteWriter& out, const Stamp& stamp);
+[[nodiscard]] Stamp take_stamp(ByteReader& in);
+template <class AnyId>
+[[nodiscard]] AnyId take_id(ByteReader& in) {
+  return AnyId(in.number<std::uint32_t>());
+}
+
+}  // namespace stillmap

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <bit>
+#include <type_traits>
+
+#include "stillmap/session/codec.hpp"
+
+namespace stillmap {
+namespace {
+
+constexpr std::size_t kPoseSize = 12 * sizeof(double);
+
+constexpr std::array kCameraNumbers = {&CameraModel::fx,
+                                       &CameraModel::fy,
+                                       &CameraModel::cx,
+                                       &CameraModel::cy,
+                                       &CameraModel::k1,
+                                       &CameraModel::k2,
+                                       &CameraModel::p1,
+                                       &CameraModel::p2,
+                                       &CameraModel::k3,
+                                       &CameraModel::depth_factor,
+                                       &CameraModel::readout_s};
+
+// A cell is its 16 bits: 2 mm each, the highest for what moves.
+static_assert(sizeof(RangeCell) == sizeof(std::uint16_t) &&
+              std::is_trivially_copyable_v<RangeCell>);
+
+void put(ByteWriter& out, const PointCloud& cloud) {
+  out.count(cloud.size());
+  out.flag(!cloud.labels.empty());
+  out.flag(!cloud.normals.empty());
+  out.array<float>(cloud.positions);
+  out.array<std::uint8_t>(cloud.colors);
+  out.array<std::uint8_t>(cloud.labels);
+  out.array<float>(cloud.normals);
+}
+
+PointCloud take_cloud(ByteReader& in) {
+  const auto size = static_cast<std::size_t>(in.number<std::uint32_t>());
+  const bool with_labels = in.flag(), with_normals = in.flag();
+  if (size == 0 && (with_labels || with_normals)) throw Error("{}: invalid flag", in.place());
+  PointCloud cloud;
+  cloud.positions = in.array<float, Eigen::Vector3f>(size);
+  cloud.colors = in.array<std::uint8_t, Rgb>(size);
+  cloud.labels = in.array<std::uint8_t, std::uint8_t>(with_labels ? size : 0);
+  cloud.normals = in.array<float, Eigen::Vector3f>(with_normals ? size : 0);
+  return cloud;
+}
+
+void put(ByteWriter& out, const RangeImage& range) {
+  out.number(static_cast<std::int32_t>(range.block_px));
+  out.number(static_cast<std::int32_t>(range.columns));
+  out.number(static_cast<std::int32_t>(range.rows));
+  out.array<std::uint16_t>(range.cells);
+}
+
+RangeImage take_range(ByteReader& in) {
+  RangeImage range;
+  range.block_px = in.number<std::int32_t>();
+  range.columns = in.number<std::int32_t>();
+  range.rows = in.number<std::int32_t>();
+  if (range.columns < 0 || range.rows < 0) throw Error("{}: invalid image size", in.place());
+  // Both below 2^31: their product fits.
+  range.cells = in.array<std::uint16_t, RangeCell>(static_cast<std::size_t>(range.columns) *
+                                                   static_cast<std::size_t>(range.rows));
+  return range;
+}
+
+}  // namespace
+
+ByteWriter encode(const CameraModel& camera) {
+  ByteWriter out;
+  out.text(camera.name);
+  out.number(static_cast<std::int32_t>(camera.width_px));
+  out.number(static_cast<std::int32_t>(camera.height_px));
+  for (double CameraModel::*number : kCameraNumbers) out.number(camera.*number);
+  return out;
+}
+
+CameraModel decode_camera(ByteReader content) {
+  CameraModel camera;
+  camera.name = content.text();
+  camera.width_px = content.number<std::int32_t>();
+  camera.height_px = content.number<std::int32_t>();
+  for (double CameraModel::*number : kCameraNumbers) camera.*number = content.number<double>();
+  content.finish();
+  return camera;
+}
+
+ByteWriter encode_text(const std::string& text) {
+  ByteWriter out;
+  out.text(text);
+  return out;
+}
+
+std::string decode_text(ByteReader content) {
+  std::string text = content.text();
+  content.finish();
+  return text;
+}
+
+ByteWriter encode(const std::vector<LoopEdge>& loops) {
+  ByteWriter out;
+  out.count(loops.size());
+  for (const LoopEdge& loop : loops) {
+    out.number(loop.a.value);
+    out.number(loop.b.value);
+    out.pose(loop.T_a_b);
+    out.number(loop.sigma_m);
+    out.number(loop.sigma_rad);
+  }
+  return out;
+}
+
+std::vector<LoopEdge> decode_loops(ByteReader content) {
+  std::vector<LoopEdge> loops(content.count(24 + kPoseSize));
+  for (LoopEdge& loop : loops) {
+    loop.a = take_id<KeyframeId>(content);
+    loop.b = take_id<KeyframeId>(content);
+    loop.T_a_b = content.pose();
+    loop.sigma_m = content.number<double>();
+    loop.sigma_rad = content.number<double>();
+  }
+  content.finish();
+  return loops;
+}
+
+ByteWriter encode(const std::vector<FrameRecord>& frames) {
+  ByteWriter out;
+  out.count(frames.size());
+  for (const FrameRecord& frame : frames) {
+    put(out, frame.stamp);
+    out.number(frame.reference.value);
+    out.pose(frame.T_reference_frame);
+  }
+  return out;
+}
+
+std::vector<FrameRecord> decode_frames(ByteReader content) {
+  std::vector<FrameRecord> frames(content.count(16 + kPoseSize));
+  for (FrameRecord& frame : frames) {
+    frame.stamp = take_stamp(content);
+    frame.reference = take_id<KeyframeId>(content);
+    frame.T_reference_frame = content.pose();
+  }
+  content.finish();
+  return frames;
+}
+
+ByteWriter encode(const ViewRecord& record) {
+  ByteWriter out;
+  out.number(record.frame);
+  put(out, record.view->cloud);
+  put(out, record.view->range);
+  return out;
+}
+
+ViewRecord decode_view(ByteReader content) {
+  ViewRecord record;
+  record.frame = content.number<std::uint32_t>();
+  StaticView view;
+  view.cloud = take_cloud(content);
+  view.range = take_range(content);
+  record.view = std::make_shared<const StaticView>(std::move(view));
+  content.finish();
+  return record;
+}
+
+}  // namespace stillmap

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "stillmap/session/bytes.hpp"
+
+namespace stillmap {
+
+// The frame of a session file: a head, then sections one after the other. docs/session-format.md
+// has the layout.
+
+inline constexpr std::string_view kSessionMagic = "stillmap";
+inline constexpr std::uint32_t kSessionVersion = 1;
+inline constexpr std::size_t kSessionHeadSize = 16;   ///< magic, version, checksum
+inline constexpr std::size_t kSectionHeadSize = 12;   ///< tag, size of the content
+inline constexpr std::size_t kSectionExtraSize = 16;  ///< that, and the checksum behind it
+inline constexpr std::size_t kMaxSectionSize = std::size_t{1} << 30U;
+inline constexpr std::string_view kEndTag = "END ";
+
+/// CRC-32 (zlib's, IEEE 802.3) of bytes that follow those with the checksum `before`.
+[[nodiscard]] std::uint32_t checksum(std::string_view bytes, std::uint32_t before = 0);
+
+/// The bytes of a file head.
+[[nodiscard]] std::string session_head(std::uint32_t version = kSessionVersion);
+
+/// Writes head and sections.
+class SectionWriter {
+ public:
+  using Sink = std::function<void(std::string_view)>;
+
+  explicit SectionWriter(Sink sink);
+  /// Throws Error, with `place`, for a content of more than kMaxSectionSize.
+  void write(std::string_view tag, const ByteWriter& content, const std::string& place);
+  /// Call once, last.
+  void finish();
+
+ private:
+  void put(std::string_view tag, std::string_view content);
+
+  Sink sink_;
+  std::uint32_t sections_ = 0;
+};
+
+/// Bytes that are read in parts.
+struct ByteSource {
+  std::uint64_t size = 0;
+  std::function<std::string(std::uint64_t offset, std::size_t size)> read;
+};
+
+/// Reads them one after the other. The bytes may come from anywhere: everything throws Error, in
+/// one line that starts with the file's name, for what is no whole session file.
+class SectionReader {
+ public:
+  /// Reads the head.
+  SectionReader(ByteSource source, std::string file);
+
+  /// Whether that is the next section.
+  [[nodiscard]] bool at(std::string_view tag) const { return next_.tag == tag; }
+  /// The content of the next section, which has to have this tag.
+  [[nodiscard]] ByteReader read(std::string_view tag);
+  /// Passes over it; its content is not read.
+  void skip(std::string_view tag);
+  /// Nothing but the end follows.
+  void finish();
+
+  [[nodiscard]] const std::string& file() const { return file_; }
+
+ private:
+  struct Head {
+    std::string bytes;
+    std::string tag;
+    std::size_t size = 0;  // of the content
+  };
+
+  void read_head();
+  void expect(std::string_view tag) const;
+  [[nodiscard]] std::string place() const;  // of the next section
+  [[nodiscard]] Error truncated() const;
+
+  ByteSource source_;
+  std::string file_;
+  std::uint64_t at_ = kSessionHeadSize;  // where the next section begins
+  std::uint32_t sections_ = 0;           // before the next
+  Head next_;
+};
+
+}  // namespace stillmap
