@@ -27,7 +27,7 @@ struct alignas(8) HuffmanEntry {  // for one load
 /// longer codes.
 class HuffmanTable {
  public:
-  static constexpr unsigned kTableBits = 11;
+  static constexpr unsigned kTableBits = 10;
   static constexpr unsigned kMaxCodeBits = 15;
 
   /// From the lengths of the codes (0: no such code, at most 15) and what each stands for, with
