@@ -23,7 +23,7 @@ struct Writing {
 };
 
 // By libpng. `rows` are as the file has them, samples of 16 bits with the high byte first.
-std::string png_of(cv::Size size, const std::vector<std::vector<png_byte>>& rows, Writing how) {
+std::string png_of(cv::Size size, std::vector<std::vector<png_byte>> rows, Writing how) {
   std::string bytes;
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
   png_infop info = png_create_info_struct(png);
@@ -47,9 +47,9 @@ std::string png_of(cv::Size size, const std::vector<std::vector<png_byte>>& rows
   png_set_compression_buffer_size(png, how.chunk_bytes);
   png_set_gAMA(png, info, 0.45);  // a chunk that says nothing of the pixels
   png_write_info(png, info);
-  std::vector<png_const_bytep> pointers;
-  for (const std::vector<png_byte>& row : rows) pointers.push_back(row.data());
-  png_write_image(png, const_cast<png_bytepp>(pointers.data()));  // it does not write there
+  std::vector<png_bytep> pointers;
+  for (std::vector<png_byte>& row : rows) pointers.push_back(row.data());
+  png_write_image(png, pointers.data());
   png_write_end(png, info);
   png_destroy_write_struct(&png, &info);
   return bytes;
