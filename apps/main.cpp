@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <opencv2/core/utility.hpp>
 #include <opencv2/core/version.hpp>
 
 #include "apps/command_line.hpp"
@@ -72,6 +73,8 @@ int run(const std::vector<std::string>& arguments) {
 }  // namespace stillmap
 
 int main(int argc, char** argv) {
+  // Threads are this program's own business: OpenCV's would wait for those that are at work.
+  cv::setNumThreads(1);
   try {
     return stillmap::run(std::vector<std::string>(argv + 1, argv + argc));
   } catch (const stillmap::Error& error) {

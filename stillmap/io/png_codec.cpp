@@ -6,6 +6,7 @@
 #include <bit>
 #include <csetjmp>
 #include <cstring>
+#include <optional>
 #include <vector>
 
 #include <png.h>
@@ -13,6 +14,7 @@
 
 #include "stillmap/core/error.hpp"
 #include "stillmap/io/image_io.hpp"
+#include "stillmap/io/plain_png.hpp"
 
 namespace stillmap {
 namespace {
@@ -196,6 +198,11 @@ bool is_png(std::string_view bytes) {
 
 cv::Mat decode_png(std::string_view bytes, PngKind kind, const std::string& name) {
   if (!is_png(bytes)) throw Error("{}: not a PNG file", name);
+  if (const std::optional<cv::Mat> plain = decode_plain_png(bytes, kind)) return *plain;
+  return decode_by_libpng(bytes, kind, name);
+}
+
+cv::Mat decode_by_libpng(std::string_view bytes, PngKind kind, const std::string& name) {
   PngReader reader(bytes);
   if (!reader.read_header()) throw DamagedImage("{}: broken PNG: {}", name, reader.error());
   if (std::max(reader.width(), reader.height()) > static_cast<std::uint32_t>(kMaxImageSidePx)) {

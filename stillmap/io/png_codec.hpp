@@ -25,6 +25,11 @@ enum class PngKind {
 /// side over kMaxImageSidePx, a truncated or damaged file.
 [[nodiscard]] cv::Mat decode_png(std::string_view bytes, PngKind kind, const std::string& name);
 
+/// The same by libpng alone, which decode_png leaves only the rarer kinds and the broken to.
+[[nodiscard]] cv::Mat decode_by_libpng(std::string_view bytes,
+                                       PngKind kind,
+                                       const std::string& name);
+
 /// Encodes CV_8UC3 (RGB), CV_8UC1 or CV_16UC1, without loss; the same image gives the same bytes.
 [[nodiscard]] std::string encode_png_bytes(const cv::Mat& image);
 

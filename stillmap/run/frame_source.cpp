@@ -1,42 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stillmap/run/frame_source.hpp"
 
+#include <utility>
+
 #include "stillmap/io/image_io.hpp"
+#include "stillmap/system/stopwatch.hpp"
 
 namespace stillmap {
 
-FrameSource::FrameSource(const TumSequence& sequence, std::vector<FrameId> frames, bool read_ahead)
-    : sequence_(sequence), frames_(std::move(frames)) {
-  if (read_ahead) reader_ = std::jthread([this] { run(); });
-}
-
-FrameSource::~FrameSource() {
-  channel_.cancel();
-}
+FrameSource::FrameSource(const TumSequence& sequence, std::vector<FrameId> frames)
+    : sequence_(sequence), frames_(std::move(frames)) {}
 
 std::optional<SourcedFrame> FrameSource::next() {
-  if (reader_.joinable()) return channel_.pop();
   if (next_ == frames_.size()) return std::nullopt;
-  return read(frames_[next_++]);
-}
-
-SourcedFrame FrameSource::read(FrameId id) const {
+  SourcedFrame sourced;
+  sourced.id = frames_[next_++];
+  Stopwatch reading;
   try {
-    return {id, sequence_.read(id), {}};
+    sourced.frame = sequence_.read(sourced.id);
   } catch (const DamagedImage& damage) {
-    return {id, nullptr, damage.what()};
+    sourced.damage = damage.what();
   }
-}
-
-void FrameSource::run() {
-  try {
-    for (const FrameId id : frames_) {
-      if (!channel_.push(read(id))) return;
-    }
-    channel_.close();
-  } catch (...) {  // the consumer's pop() throws it
-    channel_.fail(std::current_exception());
-  }
+  sourced.reading_ms = reading.lap_ms();
+  return sourced;
 }
 
 }  // namespace stillmap

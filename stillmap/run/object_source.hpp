@@ -24,6 +24,9 @@ class ObjectSource {
   /// `segmenter` may be null: then frames come out at once, without objects. It outlives this.
   ObjectSource(const Segmenter* segmenter, const ObjectTrackerConfig& config, FillRule rule);
 
+  /// Whether there is something that finds objects.
+  [[nodiscard]] bool looks() const { return segmenter_ != nullptr; }
+
   /// Takes the next frame; gives those that are ready, in order.
   [[nodiscard]] std::vector<FrameWithObjects> push(FramePtr frame);
 

@@ -9,9 +9,8 @@
 #include "stillmap/core/error.hpp"
 #include "stillmap/eval/map_alignment.hpp"
 #include "stillmap/eval/pose_at.hpp"
-#include "stillmap/run/frame_source.hpp"
+#include "stillmap/run/frame_preparation.hpp"
 #include "stillmap/run/object_log.hpp"
-#include "stillmap/run/object_source.hpp"
 #include "stillmap/run/sample_frame.hpp"
 #include "stillmap/system/stopwatch.hpp"
 
@@ -132,7 +131,6 @@ SequenceRun run_sequence(const TumSequence& sequence,
   Stopwatch wall;
   const std::vector<FrameId> frames = select_frames(sequence, options.frames);
   System system(config, sequence.camera(), {.threads = options.threads});
-  FrameSource source(sequence, frames, options.threads > 1);
   SequenceRun run;
   RunReport& report = run.report;
   report.sequence = sequence.name();
@@ -153,28 +151,26 @@ SequenceRun run_sequence(const TumSequence& sequence,
     ++done;
     if (options.on_progress) options.on_progress(done, frames.size());
   };
-  ObjectSource objects(options.segmenter,
-                       config.dynamics.object_tracking(),
-                       options.live ? FillRule::kCausal : FillRule::kBothWays);
-  Stopwatch waiting;
-  while (std::optional<SourcedFrame> next = source.next()) {
-    add_stage_time(report.stages, "reading", waiting.lap_ms());
-    if (next->frame == nullptr) {
-      skip_frame(report, sequence.entry(next->id).stamp, next->damage, options);
+  FramePreparation frames_ahead(
+      FrameSource(sequence, frames),
+      ObjectSource(options.segmenter,
+                   config.dynamics.object_tracking(),
+                   options.live ? FillRule::kCausal : FillRule::kBothWays),
+      options.threads > 1);
+  while (std::optional<PreparedFrames> next = frames_ahead.next()) {
+    if (!next->at_end) add_stage_time(report.stages, "reading", next->source.reading_ms);
+    if (!next->source.damage.empty()) {
+      skip_frame(report, sequence.entry(next->source.id).stamp, next->source.damage, options);
       ++done;
-      continue;
     }
-    std::vector<FrameWithObjects> ready = objects.push(std::move(next->frame));
-    if (options.segmenter != nullptr) {
-      add_stage_time(report.stages, "segmentation", waiting.lap_ms());
+    if (next->segmentation_ms) {
+      add_stage_time(report.stages, "segmentation", *next->segmentation_ms);
     }
-    for (FrameWithObjects& frame : ready) process(std::move(frame));
-    waiting.lap_ms();
+    for (FrameWithObjects& frame : next->ready) process(std::move(frame));
   }
-  for (FrameWithObjects& frame : objects.flush()) process(std::move(frame));
-  waiting.lap_ms();
+  Stopwatch finishing;
   run.result = system.finish();
-  add_stage_time(report.stages, "finishing", waiting.lap_ms());
+  add_stage_time(report.stages, "finishing", finishing.lap_ms());
   if (with_objects) {
     run.objects_jsonl = objects_jsonl(log, run.result.trajectory);
     report.objects = summarize_objects(log);

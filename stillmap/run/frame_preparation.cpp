@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/run/frame_preparation.hpp"
+
+#include <utility>
+
+#include "stillmap/system/stopwatch.hpp"
+
+namespace stillmap {
+
+FramePreparation::FramePreparation(FrameSource source, ObjectSource objects, bool ahead)
+    : source_(std::move(source)),
+      objects_(std::move(objects)),
+      read_([this] { return source_.next(); }, ahead ? kAhead : 0),
+      prepared_([this] { return prepare(); }, ahead ? kAhead : 0) {}
+
+std::optional<PreparedFrames> FramePreparation::prepare() {
+  if (ended_) return std::nullopt;
+  PreparedFrames prepared;
+  std::optional<SourcedFrame> read = read_.next();
+  if (!read) {
+    ended_ = true;
+    prepared.at_end = true;
+    prepared.ready = objects_.flush();
+    return prepared;
+  }
+  Stopwatch segmentation;
+  const FramePtr frame = std::exchange(read->frame, nullptr);
+  prepared.source = std::move(*read);
+  if (frame == nullptr) return prepared;
+  prepared.ready = objects_.push(frame);
+  if (objects_.looks()) prepared.segmentation_ms = segmentation.lap_ms();
+  return prepared;
+}
+
+}  // namespace stillmap

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "stillmap/core/ahead.hpp"
+#include "stillmap/run/frame_source.hpp"
+#include "stillmap/run/object_source.hpp"
+
+namespace stillmap {
+
+/// What became of the next frame of a sequence, and the frames that are ready for the system now:
+/// others than that, while objects wait for later frames.
+struct PreparedFrames {
+  SourcedFrame source;                    ///< without its frame; at the end, empty
+  std::optional<double> segmentation_ms;  ///< where objects were looked for
+  std::vector<FrameWithObjects> ready;
+  bool at_end = false;  ///< nothing was read: these are the last
+};
+
+/// Reads frames and finds their objects; with threads, each of the two runs ahead on one of its
+/// own. The results do not depend on that.
+class FramePreparation {
+ public:
+  FramePreparation(FrameSource source, ObjectSource objects, bool ahead);
+
+  /// The next frame's; once more at the end of the sequence, then nothing. Throws what reading and
+  /// segmentation throw.
+  [[nodiscard]] std::optional<PreparedFrames> next() { return prepared_.next(); }
+
+ private:
+  [[nodiscard]] std::optional<PreparedFrames> prepare();
+
+  static constexpr std::size_t kAhead = 4;
+  FrameSource source_;
+  ObjectSource objects_;
+  bool ended_ = false;
+  Ahead<SourcedFrame> read_;
+  Ahead<PreparedFrames> prepared_;  // last: its thread uses all else
+};
+
+}  // namespace stillmap
