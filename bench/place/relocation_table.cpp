@@ -28,7 +28,7 @@ namespace stillmap {
 namespace {
 
 constexpr int kDarkFrames = 30;
-constexpr std::size_t kFramesAfter = 20;
+constexpr std::size_t kFramesAfter = 30;
 
 struct Place {
   std::string name;
@@ -97,7 +97,10 @@ Apart nearest(const Place& place, std::size_t known, std::size_t i) {
 std::vector<std::size_t> choices(const Place& place, std::size_t known, bool visited) {
   std::vector<std::size_t> frames;
   for (std::size_t i = 0; i + kFramesAfter < place.T_truth_camera.size(); ++i) {
-    if (!place.T_truth_camera[i] || (i + kFramesAfter <= known) != visited) continue;
+    const auto begin = place.T_truth_camera.begin() + static_cast<std::ptrdiff_t>(i);
+    const bool all_known =
+        std::all_of(begin, begin + kFramesAfter, [](const auto& pose) { return pose.has_value(); });
+    if (!all_known || (i + kFramesAfter <= known) != visited) continue;
     if (!visited && i < known) continue;
     const Apart near = visited ? Apart{} : nearest(place, known, i);
     const Apart jump = apart(place, i, known - 1);
@@ -133,6 +136,7 @@ TrialOutcome go_on(RelocationTrial& trial, const Place& place, std::size_t jump_
 
 struct Row {
   int trials = 0, at_first = 0, within_5 = 0, wrong = 0, invented = 0, later = 0, never = 0;
+  double largest_later_m = 0;
   std::vector<double> errors_m, errors_deg;
 
   void add(const TrialOutcome& outcome) {
@@ -148,6 +152,7 @@ struct Row {
       at_first += outcome.found_at == 1 ? 1 : 0;
       (outcome.found_at <= 5 ? within_5 : later) += 1;
     }
+    largest_later_m = std::max(largest_later_m, outcome.largest_error_m);
     errors_m.push_back(outcome.error_m);
     errors_deg.push_back(outcome.error_deg);
   }
@@ -163,7 +168,7 @@ double largest(const std::vector<double>& values) {
 }
 
 void print_row(const std::string& name, const Row& row) {
-  fmt::print("| {} | {} | {} | {} | {} | {} | {} | {} | {:.3f} {:.3f} | {:.2f} {:.2f} |\n",
+  fmt::print("| {} | {} | {} | {} | {} | {} | {} | {} | {:.3f} {:.3f} | {:.2f} {:.2f} | {:.3f} |\n",
              name,
              row.trials,
              row.at_first,
@@ -175,7 +180,8 @@ void print_row(const std::string& name, const Row& row) {
              median(row.errors_m),
              largest(row.errors_m),
              median(row.errors_deg),
-             largest(row.errors_deg));
+             largest(row.errors_deg),
+             row.largest_later_m);
   std::fflush(stdout);
 }
 
@@ -242,8 +248,8 @@ int run(const std::vector<std::string>& arguments) {
   for (std::size_t i = 1; i < arguments.size(); ++i) places.push_back(open_place(arguments[i]));
   fmt::print(
       "| trials | number | found in the first frame | within 5 | later | never | wrong | poses in "
-      "the dark | error m: median, largest | degrees |\n");
-  fmt::print("|---|---|---|---|---|---|---|---|---|---|\n");
+      "the dark | error m: median, largest | degrees | largest m in the second after |\n");
+  fmt::print("|---|---|---|---|---|---|---|---|---|---|---|\n");
   std::fflush(stdout);
   Table table;
   for (const Place& place : places) {
