@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // `stillmap run` from outside: what it writes, that it is right, and each way in which it refuses.
+#include <cmath>
+#include <set>
+#include <sstream>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -212,6 +216,50 @@ TEST_F(Run, FindsItsPlaceAgainAfterTheCameraWasCovered) {
   const nlohmann::json report = nlohmann::json::parse(content("out/report.json"));
   EXPECT_EQ(report["frames"]["tracked"], kFrames - 10);
   EXPECT_LT(report["ate"]["rmse"], 0.003);
+}
+
+// In the dark from frame 30 to 59; frame k then shows what frame k - 55 did.
+TEST_F(Run, FindsItsPlaceAgainWhereItWentInTheDark) {
+  constexpr int kAll = 90, kDark = 30, kLight = 60, kBack = 55;
+  write_plane_sequence(folder_ / "wall", kAll);
+  std::istringstream lines(content("wall/groundtruth.txt"));
+  std::vector<std::string> poses;
+  for (std::string line; std::getline(lines, line);) poses.push_back(line.substr(line.find(' ')));
+  std::string truth;
+  for (int i = 0; i < kAll; ++i) {
+    const std::string color = "wall/rgb/" + stamp(i) + ".png",
+                      depth = "wall/depth/" + stamp(i) + ".png";
+    if (i >= kLight) {
+      write(color, content("wall/rgb/" + stamp(i - kBack) + ".png"));
+      write(depth, content("wall/depth/" + stamp(i - kBack) + ".png"));
+    } else if (i >= kDark) {
+      write(color, encode_png(ColorImage(cv::Mat3b::zeros(240, 320))));
+      write(depth, encode_depth_png(DepthImage(cv::Mat1f::zeros(240, 320)), 5000));
+    }
+    truth += stamp(i) + poses.at(static_cast<std::size_t>(i < kLight ? i : i - kBack)) + "\n";
+  }
+  write("wall/groundtruth.txt", truth);
+  const Outcome outcome = run("run wall --out out");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("no pose     30 frames from " + stamp(kDark)));
+  const nlohmann::json report = nlohmann::json::parse(content("out/report.json"));
+  EXPECT_LT(report["ate"]["rmse"], 0.003);
+  const nlohmann::json gaps = report["tracking"]["gaps"];
+  ASSERT_EQ(gaps.size(), 1U);
+  EXPECT_EQ(gaps[0]["first_lost"], stamp(kDark));
+  EXPECT_EQ(gaps[0]["frames"], kLight - kDark);
+  EXPECT_NEAR(gaps[0]["seconds"], 1.0, 1e-5);
+  EXPECT_EQ(gaps[0]["found_again"], true);
+  EXPECT_EQ(gaps[0]["found_at"], stamp(kLight));
+  // From frame 29 to what frame 5 shows: 24 steps of 2 mm and 1 mm.
+  EXPECT_NEAR(gaps[0]["moved_m"], 24 * std::hypot(0.002, 0.001), 0.004);
+  std::set<std::string> tracked;
+  for (const StampedPose& pose : read_trajectory(folder_ / "out" / "trajectory.txt")) {
+    tracked.insert(pose.stamp.text);
+  }
+  for (int i = 0; i < kAll; ++i) {
+    EXPECT_EQ(tracked.contains(stamp(i)), i < kDark || i >= kLight) << i;
+  }
 }
 
 }  // namespace

@@ -17,6 +17,7 @@
 #include "stillmap/io/atomic_file.hpp"
 #include "stillmap/io/camera_io.hpp"
 #include "stillmap/io/trajectory_io.hpp"
+#include "stillmap/report/tracking_gaps.hpp"
 #include "stillmap/run/map_evaluation.hpp"
 #include "stillmap/run/run_folder.hpp"
 #include "stillmap/run/run_sequence.hpp"
@@ -119,11 +120,23 @@ std::string map_line(const RunReport& report) {
   return text + (report.map_at_true_poses ? ", at true poses\n" : "\n");
 }
 
+std::string gap_lines(const RunReport& report) {
+  constexpr std::size_t kMost = 5;
+  const std::vector<TrackingGap> gaps = tracking_gaps(report.lost, report.estimate);
+  std::string text;
+  for (std::size_t i = 0; i < std::min(gaps.size(), kMost); ++i) {
+    text += fmt::format("no pose     {}\n", gap_text(gaps[i]));
+  }
+  if (gaps.size() > kMost) text += fmt::format("            and {} more\n", gaps.size() - kMost);
+  return text;
+}
+
 std::string summary(const RunArguments& arguments, const RunReport& report) {
   std::string text = fmt::format("tracked     {} of {} frames, {} key frames\n",
                                  report.frames_tracked,
                                  report.frames_total,
                                  report.keyframes.size());
+  text += gap_lines(report);
   if (report.ate) {
     text += fmt::format("ATE         {:.4f} m rmse over {} poses\n",
                         report.ate->translation_m.rmse,

@@ -2,7 +2,6 @@
 #include "stillmap/loop/loop_verifier.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <Eigen/Cholesky>
@@ -11,35 +10,13 @@
 #include "stillmap/core/rigid_align.hpp"
 #include "stillmap/optim/pose_optimizer.hpp"
 #include "stillmap/tracking/landmark_projection.hpp"
+#include "stillmap/tracking/three_points.hpp"
 
 namespace stillmap {
 namespace {
 
-// Both points of a match have errors, and the pose of three of them has its own.
-constexpr double kSlack = 4.0;
-constexpr double kMinBaseline_m = 0.1;  // nearer points tell no rotation
 constexpr double kGuidedRadius_px = 6.0;
 constexpr int kGuidedDistance = 64;
-
-using Triple = std::array<Eigen::Vector3d, 3>;
-
-bool near_measurement(const CameraModel& camera,
-                      const PointMeasurement& m,
-                      const Eigen::Vector3d& p_camera) {
-  return p_camera.z() >= kMinPointDepth &&
-         reprojection_residual(camera, m, p_camera).squaredNorm() <= kSlack * chi2_bound(m);
-}
-
-// A rigid motion keeps distances; errors of depth grow with its square.
-bool same_shape(const Triple& a, const Triple& b) {
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::size_t j = (i + 1) % 3;
-    const double la = (a[i] - a[j]).norm(), lb = (b[i] - b[j]).norm();
-    const double z = std::max({a[i].z(), a[j].z(), b[i].z(), b[j].z()});
-    if (la < kMinBaseline_m || std::abs(la - lb) > 0.05 * la + 0.02 * z * z) return false;
-  }
-  return true;
-}
 
 }  // namespace
 
@@ -98,7 +75,7 @@ std::optional<Eigen::Isometry3d> LoopVerifier::sample(FrameId frame,
   std::optional<Eigen::Isometry3d> best;
   auto best_support = static_cast<std::size_t>(config_.min_matches - 1);
   for (int iteration = 0; iteration < config_.iterations; ++iteration) {
-    Triple in_a, in_b;
+    PointTriple in_a, in_b;
     for (std::size_t i = 0; i < 3; ++i) {
       const Match& pick = matches[draw_index(rng, count)];
       in_a[i] = *a.p_camera[pick.first];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -22,5 +23,14 @@ struct Keyframe {
   FeaturesPtr features;
   std::vector<LandmarkId> landmarks;  ///< per feature; invalid where it sees none
 };
+
+/// The features that see a landmark, in order.
+[[nodiscard]] inline std::vector<std::uint32_t> features_with_landmark(const Keyframe& keyframe) {
+  std::vector<std::uint32_t> features;
+  for (std::uint32_t i = 0; i < keyframe.landmarks.size(); ++i) {
+    if (keyframe.landmarks[i].valid()) features.push_back(i);
+  }
+  return features;
+}
 
 }  // namespace stillmap

@@ -9,6 +9,7 @@
 #include "stillmap/report/page_sections.hpp"
 #include "stillmap/report/page_text.hpp"
 #include "stillmap/report/time_summary.hpp"
+#include "stillmap/report/tracking_gaps.hpp"
 
 namespace stillmap {
 namespace {
@@ -162,6 +163,10 @@ std::string details_html(const RunReport& report) {
                        }));
   }
   if (!report.lost.empty()) {
+    const std::vector<TrackingGap> gaps = tracking_gaps(report.lost, report.estimate);
+    out += fmt::format("<details open><summary>{} in tracking</summary>{}</details>",
+                       plural(gaps.size(), "gap"),
+                       list_html(gaps, gap_text));
     out += fmt::format("<details><summary>{} without a pose</summary>{}</details>",
                        plural(report.lost.size(), "frame"),
                        list_html(report.lost, [](const Stamp& stamp) { return stamp.text; }));

@@ -239,6 +239,8 @@ TEST(ReportHtml, of_a_run_that_tracked_nothing) {
   const std::string page = report_html(report);
   EXPECT_EQ(first_fault(page), "");
   EXPECT_THAT(page, HasSubstr("No frame could be tracked"));
+  EXPECT_THAT(page, HasSubstr("1 gap in tracking"));
+  EXPECT_THAT(page, HasSubstr("not found again"));
   EXPECT_THAT(page, HasSubstr("The map is empty"));
   EXPECT_THAT(page, HasSubstr("fewer than three poses"));
 }

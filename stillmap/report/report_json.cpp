@@ -11,6 +11,7 @@
 
 #include "stillmap/eval/metrics_json.hpp"
 #include "stillmap/report/time_summary.hpp"
+#include "stillmap/report/tracking_gaps.hpp"
 
 namespace stillmap {
 namespace {
@@ -45,6 +46,19 @@ Json all_frames_json(const RunReport& report) {
   json["skipped"] = skipped;
   json["lost"] = lost;
   return json;
+}
+
+Json tracking_json(const RunReport& report) {
+  Json gaps = Json::array();
+  for (const TrackingGap& gap : tracking_gaps(report.lost, report.estimate)) {
+    gaps.push_back({{"first_lost", gap.first_lost.text},
+                    {"frames", gap.frames},
+                    {"seconds", gap.seconds},
+                    {"found_again", gap.found.has_value()},
+                    {"found_at", gap.found ? Json(gap.found->text) : Json()},
+                    {"moved_m", optional_json(gap.moved_m)}});
+  }
+  return {{"gaps", gaps}};
 }
 
 Json times_json(std::span<const double> values) {
@@ -135,6 +149,7 @@ std::string report_json(const RunReport& report) {
                      {"sequence", report.sequence},
                      {"camera", camera_json(report.camera)},
                      {"frames", all_frames_json(report)},
+                     {"tracking", tracking_json(report)},
                      {"keyframes", report.keyframes.size()},
                      {"time", time_json(report)},
                      {"memory", {{"peak_mb", optional_json(report.peak_memory_mb)}}},

@@ -59,6 +59,28 @@ TEST(ReportJson, known_figures) {
   EXPECT_EQ(j.at("warnings"), json{"depth is sparse"});
 }
 
+TEST(ReportJson, gaps_in_tracking) {
+  RunReport report;
+  report.lost = {{2, "2.0"}, {3, "3.0"}, {6, "6.0"}};
+  report.estimate = {{{1, "1.0"}, Eigen::Isometry3d::Identity()},
+                     {{4, "4.0"}, Eigen::Isometry3d(Eigen::Translation3d(0, 0, 0.5))}};
+  const json gaps = json::parse(report_json(report)).at("tracking").at("gaps");
+  EXPECT_EQ(gaps,
+            json::array({{{"first_lost", "2.0"},
+                          {"frames", 2},
+                          {"seconds", 2.0},
+                          {"found_again", true},
+                          {"found_at", "4.0"},
+                          {"moved_m", 0.5}},
+                         {{"first_lost", "6.0"},
+                          {"frames", 1},
+                          {"seconds", 0.0},
+                          {"found_again", false},
+                          {"found_at", nullptr},
+                          {"moved_m", nullptr}}}));
+  EXPECT_EQ(json::parse(report_json(RunReport{})).at("tracking").at("gaps"), json::array());
+}
+
 TEST(ReportJson, times) {
   const PointCloud map;
   const json time = json::parse(report_json(small_report(map))).at("time");

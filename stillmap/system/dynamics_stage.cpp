@@ -68,6 +68,12 @@ const DynamicsStage::PastFrame* DynamicsStage::past_frame(std::int64_t frames_ag
   return nullptr;
 }
 
+const DynamicsStage::PastFrame* DynamicsStage::first_since_lost() const {
+  const auto frame = std::ranges::find_if(
+      past_, [&](const PastFrame& past) { return past.number >= found_again_; });
+  return frame != past_.end() ? &*frame : nullptr;
+}
+
 std::vector<PreviousDepth> DynamicsStage::previous(
     const std::optional<Eigen::Isometry3d>& T_world_camera) const {
   std::vector<PreviousDepth> frames;
@@ -81,7 +87,10 @@ std::vector<PreviousDepth> DynamicsStage::previous(
     const PastFrame* past = past_frame(std::int64_t{age} * config_.compare_frames);
     if (past != nullptr) add(*past);
   }
-  if (frames.empty()) add(past_.front());
+  if (number_ - found_again_ < config_.compare_frames) {
+    const PastFrame* first = first_since_lost();
+    if (first != nullptr) add(*first);
+  }
   return frames;
 }
 
@@ -125,7 +134,9 @@ void DynamicsStage::remember(const RgbdFrame& frame,
   last_ = {frame.depth, T_world_camera};
   // A third of the age's precision is enough, and a third of the memory.
   const int step = std::max(1, config_.compare_frames / 3);
-  if (number_ % step == 0) past_.push_back({*last_, covered(dynamics.judged.mask), number_});
+  if ((number_ - found_again_) % step == 0) {
+    past_.push_back({*last_, covered(dynamics.judged.mask), number_});
+  }
   ++number_;
   const std::int64_t oldest = number_ - std::int64_t{4} * config_.compare_frames - step;
   while (!past_.empty() && past_.front().number < oldest) past_.pop_front();

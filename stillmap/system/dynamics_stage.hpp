@@ -89,11 +89,13 @@ class DynamicsStage {
                 const Eigen::Isometry3d& T_world_camera,
                 FrameDynamics& dynamics);
 
-  /// Tracking was lost: earlier poses say nothing of later ones.
+  /// Tracking was lost: the next frame with a pose does not follow on the last. What was seen
+  /// before stays known, for it is in the same world: when found again near there, people stand out
+  /// at once.
   void forget() {
     last_.reset();
-    past_.clear();
     features_.reset();
+    found_again_ = number_;
   }
 
  private:
@@ -109,15 +111,17 @@ class DynamicsStage {
   [[nodiscard]] std::vector<PreviousDepth> previous(
       const std::optional<Eigen::Isometry3d>& T_world_camera) const;
   [[nodiscard]] const PastFrame* past_frame(std::int64_t frames_ago) const;
+  [[nodiscard]] const PastFrame* first_since_lost() const;
 
   DynamicsConfig config_;
   std::optional<DynamicObjects> objects_;
   MotionStates motions_;
   std::optional<FeatureSifter> sifter_;
   std::optional<PastView> last_;
-  std::deque<PastFrame> past_;  // some of those before, the newest last
-  std::int64_t number_ = 0;     // of frames remembered
-  FeaturesPtr features_;        // of the last frame, as they were extracted
+  std::deque<PastFrame> past_;    // some of those before, the newest last
+  std::int64_t number_ = 0;       // of frames remembered
+  std::int64_t found_again_ = 0;  // number of the first of them since tracking was lost
+  FeaturesPtr features_;          // of the last frame, as they were extracted
 };
 
 }  // namespace stillmap

@@ -6,6 +6,8 @@ bool wants_keyframe(const KeyframePolicyConfig& config,
                     const TrackedFrame& frame,
                     const KeyframeAge& since_keyframe) {
   if (!has_pose(frame) || since_keyframe.frames < config.min_gap_frames) return false;
+  // What moves in it was judged without knowing where the camera is.
+  if (frame.status == TrackingStatus::kRelocalized) return false;
   if (since_keyframe.frames >= config.max_gap_frames) return true;
   if (frame.inliers < config.min_tracked_ratio * since_keyframe.most_inliers) return true;
 

@@ -46,6 +46,13 @@ TEST(WantsKeyframe, NeverOfALostFrame) {
   EXPECT_FALSE(wants(lost, 1000, 200));
 }
 
+TEST(WantsKeyframe, NeverOfTheFrameThatIsFoundAgain) {
+  TrackedFrame found = frame_with(0);
+  EXPECT_TRUE(wants(found, 1000, 200));
+  found.status = TrackingStatus::kRelocalized;
+  EXPECT_FALSE(wants(found, 1000, 200));
+}
+
 TEST(WantsKeyframe, WhenFewerLandmarksAreFoundThanSinceTheLastOne) {
   EXPECT_TRUE(wants(frame_with(149), 10, 200));  // 75 % of 200 are 150
   EXPECT_FALSE(wants(frame_with(150), 10, 200));

@@ -2,20 +2,26 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "stillmap/core/camera.hpp"
 #include "stillmap/core/fields.hpp"
 #include "stillmap/map/map.hpp"
 #include "stillmap/optim/measurement_model.hpp"
+#include "stillmap/optim/pose_optimizer.hpp"
 #include "stillmap/place/place_index.hpp"
 
 namespace stillmap {
 
 struct RelocalizerConfig {
   int candidates = 5;
-  int iterations = 200;
-  int min_inliers = 25;
+  int iterations = 300;
+  int min_matches = 15;
+  double search_radius_px = 15;
+  int local_keyframes = 10;
+  int min_inliers = 50;
+  double min_share = 0.25;
   int new_world_after_frames = 60;
 
   template <class Self, class Visitor>
@@ -24,7 +30,19 @@ struct RelocalizerConfig {
           self.candidates,
           FieldInfo{"key frames tried in a frame while lost", "", 1, 1000});
     visit("iterations", self.iterations, FieldInfo{"of RANSAC, per key frame", "", 1, 100000});
+    visit("min_matches",
+          self.min_matches,
+          FieldInfo{"by appearance that have one pose in common", "", 4, 1000});
+    visit("search_radius_px",
+          self.search_radius_px,
+          FieldInfo{"search for more landmarks from there, on the finest level", "px", 1, 100});
+    visit("local_keyframes",
+          self.local_keyframes,
+          FieldInfo{"key frames whose landmarks are searched then", "", 1, 1000});
     visit("min_inliers", self.min_inliers, FieldInfo{"that prove a place", "", 4, 1000});
+    visit("min_share",
+          self.min_share,
+          FieldInfo{"of the landmarks that should be seen, found", "", 0, 1});
     visit("new_world_after_frames",
           self.new_world_after_frames,
           FieldInfo{"lost for so long, the camera begins a new map, which joins the others when a "
@@ -35,12 +53,20 @@ struct RelocalizerConfig {
   }
 };
 
+/// A place that was found again.
 struct Relocalization {
-  Eigen::Isometry3d T_camera_world;
+  Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();
   std::vector<std::pair<std::uint32_t, LandmarkId>> matches;  ///< (feature, landmark), inliers
+  double share = 0;  ///< of the key frame's landmarks that should be seen, that are found
 };
 
-/// Finds a frame's pose without knowing where the camera is, by appearance alone.
+/// Finds a frame's pose without knowing where the camera is.
+///
+/// Each key frame that looks like the frame is matched by appearance; the pose of three matches
+/// with depth that most matches agree with (RANSAC; those without depth count too) is refined, more
+/// landmarks are looked for where it says, and it is refined with them. Many of the landmarks that
+/// should be seen have to be: a place that only has some things in common with a known one is not
+/// it.
 class Relocalizer {
  public:
   Relocalizer(const RelocalizerConfig& config,
@@ -48,27 +74,54 @@ class Relocalizer {
               MeasurementModel measure,
               std::uint32_t seed);
 
-  /// Tries the key frames that look most like the frame, best first. Nothing when none fits.
-  /// `places` holds key frames of the map.
+  /// Of the key frames that look most like the frame, the place with most landmarks found. Nothing
+  /// when none fits. `places` holds key frames of the map.
   [[nodiscard]] std::optional<Relocalization> find(FrameId frame,
                                                    const Features& features,
                                                    const Map& map,
                                                    const PlaceIndex& places) const;
 
  private:
-  struct Correspondence {
+  struct Match {
     std::uint32_t feature;
     LandmarkId landmark;
-    Eigen::Vector3d p_world;
-    Eigen::Vector3d p_camera;  // from the feature's depth
-    bool has_depth;
+    PoseObservation observation;
+  };
+  using Matches = std::vector<Match>;
+  struct Pose {
+    Eigen::Isometry3d T_camera_world;
+    Matches inliers;
   };
 
-  [[nodiscard]] std::vector<Correspondence> match(const Features& features,
-                                                  const Keyframe& keyframe,
-                                                  const Map& map) const;
-  [[nodiscard]] std::optional<Eigen::Isometry3d> sample_pose(
-      FrameId frame, std::span<const Correspondence> matches) const;
+  [[nodiscard]] std::optional<Relocalization> verify(FrameId frame,
+                                                     const Features& features,
+                                                     const Map& map,
+                                                     const Keyframe& keyframe) const;
+  [[nodiscard]] Match make_match(const Features& features,
+                                 std::uint32_t feature,
+                                 LandmarkId landmark,
+                                 const Map& map) const;
+  [[nodiscard]] Matches match(const Features& features,
+                              const Keyframe& keyframe,
+                              const Map& map) const;
+  [[nodiscard]] Matches agreeing(const Matches& matches,
+                                 const Eigen::Isometry3d& T_camera_world) const;
+  [[nodiscard]] std::optional<Eigen::Isometry3d> sample_pose(FrameId frame,
+                                                             const Features& features,
+                                                             const Keyframe& keyframe,
+                                                             const Matches& matches) const;
+  [[nodiscard]] std::vector<LandmarkId> local_landmarks(const Keyframe& keyframe,
+                                                        const Map& map) const;
+  [[nodiscard]] Matches search(const Features& features,
+                               const Map& map,
+                               std::span<const LandmarkId> landmarks,
+                               const Eigen::Isometry3d& T_camera_world,
+                               double radius_px) const;
+  [[nodiscard]] Pose optimize(const Eigen::Isometry3d& initial, const Matches& matches) const;
+  [[nodiscard]] double share_found(const Features& features,
+                                   const Map& map,
+                                   const Keyframe& keyframe,
+                                   const Pose& pose) const;
 
   RelocalizerConfig config_;
   CameraModel camera_;

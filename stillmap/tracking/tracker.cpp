@@ -221,12 +221,10 @@ std::optional<Tracker::PoseFromMatches> Tracker::track_reference(const TrackedFr
                                                                  const Features& features,
                                                                  const Map& map) const {
   const Keyframe& reference = map.keyframe(map.anchor(frame.reference).keyframe);
-  std::vector<std::uint32_t> with_landmark;
-  for (std::uint32_t i = 0; i < reference.landmarks.size(); ++i) {
-    if (reference.landmarks[i].valid()) with_landmark.push_back(i);
-  }
-  const std::vector<FeatureMatch> found = match_all(
-      *reference.features, with_landmark, features, {.max_distance = 60, .max_ratio = 0.7});
+  const std::vector<FeatureMatch> found = match_all(*reference.features,
+                                                    features_with_landmark(reference),
+                                                    features,
+                                                    {.max_distance = 60, .max_ratio = 0.7});
   Matches matches;
   for (const FeatureMatch& match :
        keep_consistent_rotations(found, reference.features->angle_deg, features.angle_deg)) {
