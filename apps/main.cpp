@@ -55,6 +55,7 @@ const std::vector<AddCommand> kCommands = {add_run_command,
                                            add_synth_command,
                                            add_evaluate_command,
                                            add_export_command,
+                                           add_merge_command,
                                            add_view_command,
                                            add_config_command};
 

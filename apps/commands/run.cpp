@@ -21,6 +21,7 @@
 #include "stillmap/run/map_evaluation.hpp"
 #include "stillmap/run/run_folder.hpp"
 #include "stillmap/run/run_sequence.hpp"
+#include "stillmap/session/session_io.hpp"
 #include "version.hpp"
 
 namespace stillmap {
@@ -40,6 +41,8 @@ struct RunArguments {
   std::size_t stride = 1;
   int threads = 2;
   bool live = false;
+  std::string load;
+  bool localize_only = false;
   std::string groundtruth;
   std::string poses = "estimated";
 };
@@ -142,6 +145,9 @@ std::string summary(const RunArguments& arguments, const RunReport& report) {
                         report.ate->translation_m.rmse,
                         report.ate->pairs.size());
   }
+  if (!report.loops.empty()) {
+    text += fmt::format("loops       {} closed\n", report.loops.size());
+  }
   text += map_line(report);
   text += fmt::format("time        {:.1f} s, {:.1f} frames a second\n",
                       *report.wall_s,
@@ -151,8 +157,19 @@ std::string summary(const RunArguments& arguments, const RunReport& report) {
   return text;
 }
 
+// The map of a run that only localises is the one that it was given.
+void save_session(Session& session, const RunArguments& arguments, const std::string& settings) {
+  if (arguments.localize_only) return;
+  session.config_yaml = settings;
+  write_session(std::filesystem::path(arguments.out) / "map.stillmap", session);
+}
+
 int run(const RunArguments& arguments) {
   SystemConfig config = make_config(arguments);
+  if (arguments.localize_only && arguments.load.empty()) {
+    throw Error(
+        "--localize-only needs a map to find the camera in: name a map.stillmap with --load");
+  }
   const TumSequence sequence =
       TumSequence::open(arguments.sequence, {.camera = chosen_camera(arguments.camera)});
   std::optional<Trajectory> groundtruth = read_groundtruth(arguments, sequence);
@@ -166,9 +183,10 @@ int run(const RunArguments& arguments) {
       arguments.segmenter == "none"
           ? nullptr
           : make_segmenter(arguments.segmenter, {camera.width_px, camera.height_px});
-  prepare_run_folder(arguments.out);
-
   RunOptions options;
+  if (!arguments.load.empty()) options.start = read_session(arguments.load);
+  options.localize_only = arguments.localize_only;
+  prepare_run_folder(arguments.out);
   options.segmenter = segmenter.get();
   if (!arguments.frames.empty()) options.frames = parse_frames(arguments.frames);
   options.frames.stride = arguments.stride;
@@ -178,7 +196,7 @@ int run(const RunArguments& arguments) {
   ProgressBar progress("frames");
   options.on_progress = [&](std::size_t done, std::size_t total) { progress.show(done, total); };
   options.on_warning = [&](const std::string& warning) { progress.warn(warning); };
-  SequenceRun run = run_sequence(sequence, config, options);
+  SequenceRun run = run_sequence(sequence, config, std::move(options));
   progress.finish();
 
   RunReport& report = run.report;
@@ -189,6 +207,7 @@ int run(const RunArguments& arguments) {
   choose_map(run, arguments);
   if (truth) evaluate_maps(run, *truth);
   write_run_folder(arguments.out, run.result, report, run.objects_jsonl);
+  save_session(run.session, arguments, report.config_yaml);
   print_output(summary(arguments, report));
   return run.result.lost_at_end ? kLostForGood : 0;
 }
@@ -222,6 +241,12 @@ void add_settings(CLI::App& command, RunArguments& arguments) {
   command.add_option("--dynamics",
                      arguments.dynamics,
                      "what is done about what moves: off, mask, paper or full; as dynamics.mode");
+  command.add_option("--load",
+                     arguments.load,
+                     "a map.stillmap to go on from, once the camera sees a place that it has");
+  command.add_flag("--localize-only",
+                   arguments.localize_only,
+                   "with --load: track against that map and leave it as it is");
   command.add_flag("--live",
                    arguments.live,
                    "look at no later frame: what a network misses is carried on from earlier ones");
@@ -248,6 +273,7 @@ void add_run_command(CLI::App& app, CommandResult& result) {
       "Examples:\n"
       "  stillmap run rgbd_dataset_freiburg1_xyz --out result\n"
       "  stillmap run office --out result --frames 0:300 --set cloud.voxel_size_m=0.02\n"
+      "  stillmap run office --out more --load result/map.stillmap --localize-only\n"
       "Exit code 3 says that tracking was lost for good: the results end before the sequence "
       "does.");
   command->callback([arguments, &result] { result.exit_code = run(*arguments); });

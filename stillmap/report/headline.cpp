@@ -48,10 +48,11 @@ Tile rpe_tile(const RunReport& report) {
 Tile tracked_tile(const RunReport& report) {
   return {"Frames tracked",
           share_text(report.frames_tracked, report.frames_total),
-          fmt::format("{} of {}; {}",
+          fmt::format("{} of {}; {}, {} closed",
                       count_text(report.frames_tracked),
                       count_text(report.frames_total),
-                      plural(report.keyframes.size(), "key frame"))};
+                      plural(report.keyframes.size(), "key frame"),
+                      plural(report.loops.size(), "loop"))};
 }
 
 Tile time_tile(const RunReport& report) {

@@ -45,6 +45,7 @@ Json all_frames_json(const RunReport& report) {
   Json json = frames_json(report.frames_total, report.frames_tracked);
   json["skipped"] = skipped;
   json["lost"] = lost;
+  json["elsewhere"] = report.frames_elsewhere;
   return json;
 }
 
@@ -59,6 +60,14 @@ Json tracking_json(const RunReport& report) {
                     {"moved_m", optional_json(gap.moved_m)}});
   }
   return {{"gaps", gaps}};
+}
+
+Json loops_json(const RunReport& report) {
+  Json loops = Json::array();
+  for (const LoopClosure& loop : report.loops) {
+    loops.push_back({{"earlier", loop.earlier.text}, {"later", loop.later.text}});
+  }
+  return loops;
 }
 
 Json times_json(std::span<const double> values) {
@@ -151,6 +160,7 @@ std::string report_json(const RunReport& report) {
                      {"frames", all_frames_json(report)},
                      {"tracking", tracking_json(report)},
                      {"keyframes", report.keyframes.size()},
+                     {"loops", loops_json(report)},
                      {"time", time_json(report)},
                      {"memory", {{"peak_mb", optional_json(report.peak_memory_mb)}}},
                      {"ate", ate_json(report.ate)},

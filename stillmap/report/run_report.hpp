@@ -88,6 +88,12 @@ struct ObjectSummary {
 
 /// All that the reports of a run say. A plain value: whoever ran the run fills it. What is not
 /// known stays empty: `nullopt`, or no elements.
+/// A place that was recognised, and the map corrected.
+struct LoopClosure {
+  Stamp earlier;  ///< of the key frame that saw it before
+  Stamp later;
+};
+
 struct RunReport {
   std::string version;      ///< of the program
   std::string sequence;     ///< name or path of the sequence; any text
@@ -98,6 +104,9 @@ struct RunReport {
   std::size_t frames_tracked = 0;     ///< poses in the trajectory
   std::vector<SkippedFrame> skipped;  ///< unreadable ones, in order
   std::vector<Stamp> lost;            ///< frames read but without a pose, in order
+
+  std::size_t frames_elsewhere = 0;  ///< tracked in a world that nothing ties to this one
+  std::vector<LoopClosure> loops;    ///< closed in this run, in order
 
   Trajectory estimate;                    ///< final poses of all tracked frames, in the run's world
   Trajectory keyframes;                   ///< the same of the key frames

@@ -93,6 +93,15 @@ void add_map_at_true_poses(SequenceRun& run, const System& system, const Traject
   run.map_at_true_poses = system.cloud_with_poses(poses);
 }
 
+void warn_of_frames_elsewhere(RunReport& report, const RunOptions& options) {
+  if (report.frames_elsewhere == 0) return;
+  report.warnings.push_back(
+      fmt::format("{} frames were tracked after a loss in a map of their own, which no known place "
+                  "joins to this one: they are not in the results",
+                  report.frames_elsewhere));
+  if (options.on_warning) options.on_warning(report.warnings.back());
+}
+
 void finish_report(SequenceRun& run, const TumSequence& sequence, const System& system) {
   RunReport& report = run.report;
   report.camera = sequence.camera();
@@ -100,6 +109,9 @@ void finish_report(SequenceRun& run, const TumSequence& sequence, const System& 
   report.frames_tracked = run.result.trajectory.size();
   report.estimate = run.result.trajectory;
   report.keyframes = run.result.keyframes;
+  report.frames_elsewhere = run.result.frames_elsewhere;
+  for (const ClosedLoop& loop : run.result.loops)
+    report.loops.push_back({loop.earlier, loop.later});
   report.peak_memory_mb = peak_memory_mb();
 }
 
@@ -127,10 +139,11 @@ FrameSelection parse_frames(const std::string& text) {
 
 SequenceRun run_sequence(const TumSequence& sequence,
                          const SystemConfig& config,
-                         const RunOptions& options) {
+                         RunOptions options) {
   Stopwatch wall;
   const std::vector<FrameId> frames = select_frames(sequence, options.frames);
-  System system(config, sequence.camera(), {.threads = options.threads});
+  System system(config, sequence.camera(), {options.threads, options.localize_only});
+  if (options.start) system.load(std::move(*options.start));
   SequenceRun run;
   RunReport& report = run.report;
   report.sequence = sequence.name();
@@ -176,8 +189,10 @@ SequenceRun run_sequence(const TumSequence& sequence,
     report.objects = summarize_objects(log);
   }
   finish_report(run, sequence, system);
+  warn_of_frames_elsewhere(report, options);
   report.wall_s = wall.lap_ms() / 1000.0;
   if (options.groundtruth) add_map_at_true_poses(run, system, *options.groundtruth);
+  run.session = system.take_session();
   return run;
 }
 

@@ -27,6 +27,8 @@ struct RunOptions {
   FrameSelection frames;
   int threads = 2;
   bool live = false;  ///< no frame waits for later ones: what a network misses is carried forward
+  std::optional<Session> start;          ///< a saved session that the run goes on from
+  bool localize_only = false;            ///< the map stays as `start` has it
   const Segmenter* segmenter = nullptr;  ///< what finds objects; none where null
   /// Where there is one, the map is made once more with its poses.
   std::optional<Trajectory> groundtruth;
@@ -36,6 +38,7 @@ struct RunOptions {
 
 struct SequenceRun {
   RunResult result;
+  Session session;  ///< what can be saved; its settings are the caller's
   /// All that the run itself knows; `map` is not set. What concerns ground truth, configuration and
   /// version is the caller's.
   RunReport report;
@@ -52,6 +55,6 @@ struct SequenceRun {
 /// so is an image of the wrong kind or size. The result does not depend on the number of threads.
 [[nodiscard]] SequenceRun run_sequence(const TumSequence& sequence,
                                        const SystemConfig& config,
-                                       const RunOptions& options);
+                                       RunOptions options);
 
 }  // namespace stillmap

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stillmap/system/config.hpp"
 
+#include <utility>
+
 #include "stillmap/core/error.hpp"
 
 namespace stillmap {
@@ -24,6 +26,12 @@ void SystemConfig::check() const {
         tracking.orb.weak_corner_threshold,
         tracking.orb.corner_threshold);
   }
+}
+
+MeasurementModel between_views(const SystemConfig& config, std::vector<float> level_scales) {
+  MeasurementConfig measurement = config.measurement;
+  measurement.inverse_depth_sigma = config.loop.inverse_depth_sigma;
+  return {measurement, std::move(level_scales)};
 }
 
 }  // namespace stillmap

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "stillmap/core/fields.hpp"
 #include "stillmap/features/orb_extractor.hpp"
@@ -56,5 +57,11 @@ struct SystemConfig {
   /// Rules that concern several values. Throws Error naming the keys.
   void check() const;
 };
+
+/// What features measure where loops are judged and the world is adjusted to them. Over a whole
+/// loop depth has to count for what it is: pixels alone hardly tell a step aside from a turn.
+/// Tracking trusts it less, since the sensor's errors are alike from frame to frame.
+[[nodiscard]] MeasurementModel between_views(const SystemConfig& config,
+                                             std::vector<float> level_scales);
 
 }  // namespace stillmap

@@ -2,10 +2,10 @@
 #include "stillmap/system/system.hpp"
 
 #include <algorithm>
-#include <tuple>
 
 #include "stillmap/core/error.hpp"
 #include "stillmap/session/session_map.hpp"
+#include "stillmap/system/merge_sessions.hpp"
 #include "stillmap/system/stopwatch.hpp"
 
 namespace stillmap {
@@ -14,46 +14,6 @@ namespace {
 const SystemConfig& checked(const SystemConfig& config) {
   config.check();
   return config;
-}
-
-// Over a whole loop depth has to count for what it is: pixels alone hardly tell a step aside from a
-// turn. Tracking trusts it less, since the sensor's errors are alike from frame to frame.
-MeasurementModel between_views(const SystemConfig& config, const std::vector<float>& level_scales) {
-  MeasurementConfig measurement = config.measurement;
-  measurement.inverse_depth_sigma = config.loop.inverse_depth_sigma;
-  return {measurement, level_scales};
-}
-
-bool same_lens(const CameraModel& a, const CameraModel& b) {
-  const auto intrinsics = [](const CameraModel& c) {
-    return std::tuple(
-        c.width_px, c.height_px, c.fx, c.fy, c.cx, c.cy, c.k1, c.k2, c.p1, c.p2, c.k3);
-  };
-  return intrinsics(a) == intrinsics(b);
-}
-
-void check_fits(const Session& session,
-                const CameraModel& camera,
-                const std::vector<float>& level_scales) {
-  if (!same_lens(session.camera, camera)) {
-    throw Error(
-        "the saved map is of camera '{}' ({} x {} px, fx {:.2f}), the sequence of '{}' ({} x {} "
-        "px, fx {:.2f}): expected the same; see --camera",
-        session.camera.name,
-        session.camera.width_px,
-        session.camera.height_px,
-        session.camera.fx,
-        camera.name,
-        camera.width_px,
-        camera.height_px,
-        camera.fx);
-  }
-  if (session.map.level_scales() != level_scales) {
-    throw Error(
-        "the saved map has {} pyramid levels of other sizes than these settings: expected the same "
-        "tracking.levels and tracking.scale_factor",
-        session.map.level_scales().size());
-  }
 }
 
 constexpr std::int64_t kEnd = std::int64_t{1} << 62;  // after all frames, and what they lead to
@@ -81,7 +41,13 @@ System::System(const SystemConfig& config, const CameraModel& camera, const Syst
 
 void System::load(Session session) {
   STILLMAP_CHECK(frame_number_ == 0);
-  check_fits(session, camera_, extractor_.level_scales());
+  check_fits(session, camera_, extractor_.level_scales(), "the saved map");
+  const auto knows_free_space = [](const ViewRecord& v) { return !v.view->range.cells.empty(); };
+  if (cloud_config_.free_space == "on" && !std::ranges::all_of(session.views, knows_free_space)) {
+    throw Error(
+        "the saved map has views that know no free space, which these settings ask for: run with "
+        "its own dynamics.mode, or with cloud.free_space=off");
+  }
   session_ = std::move(session);
   first_frame_ = session_.frames.size();
   loops_.set_places(index_of(session_.map));
@@ -141,7 +107,11 @@ void System::update_map(std::int64_t frame) {
   bool moved = false;
   for (const MapUpdate& update : mapping_jobs_.collect_due(frame)) {
     apply(update);
-    moved = loops_.close(session_, session_.map.keyframes().rbegin()->first, frame) || moved;
+    if (!loops_.close(session_, session_.map.keyframes().rbegin()->first, frame)) continue;
+    const LoopEdge& loop = session_.loops.back();
+    closed_loops_.push_back(
+        {session_.map.keyframe(loop.a).stamp, session_.map.keyframe(loop.b).stamp});
+    moved = true;
   }
   if (mapping_jobs_.empty()) moved = loops_.apply_due(session_.map, frame) || moved;
   if (moved) T_odometry_world_ = T_odometry_world_ * T_world_last * last_pose().inverse();
@@ -249,7 +219,7 @@ RunResult System::finish() {
   result.trajectory = trajectory_in(session_, world, first_frame_);
   result.frames_elsewhere = session_.frames.size() - first_frame_ - result.trajectory.size();
   result.keyframes = keyframes_in(session_, world);
-  result.loops_closed = session_.loops.size();
+  result.loops = closed_loops_;
   std::vector<PosedView> posed;
   for (const ViewRecord& view : session_.views) {
     const FrameRecord& record = session_.frames[view.frame];

@@ -18,6 +18,11 @@
 
 namespace stillmap {
 
+/// A place that was recognised: the stamps of the key frames that saw it.
+struct ClosedLoop {
+  Stamp earlier, later;
+};
+
 /// All that a finished run knows, under final poses.
 struct RunResult {
   /// The run's tracked frames in the world that has most of them. Others were tracked after a loss
@@ -26,7 +31,7 @@ struct RunResult {
   std::size_t frames_elsewhere = 0;  ///< tracked, but in such a world
   Trajectory keyframes;              ///< of that world, also those of a session that it continues
   PointCloud map;                    ///< of that world
-  std::size_t loops_closed = 0;
+  std::vector<ClosedLoop> loops;     ///< closed in this run
   bool lost_at_end = false;
 };
 
@@ -62,8 +67,8 @@ class System {
   [[nodiscard]] PointCloud cloud_with_poses(
       std::span<const std::optional<Eigen::Isometry3d>> T_world_frames) const;
 
-  /// What can be saved. After finish().
-  [[nodiscard]] const Session& session() const { return session_; }
+  /// What can be saved. After finish(); nothing else may be asked then.
+  [[nodiscard]] Session take_session() { return std::move(session_); }
   [[nodiscard]] const Map& map() const { return session_.map; }
   /// Readout time of the camera's rolling shutter, as learnt so far.
   [[nodiscard]] double readout_s() const { return tracker_.readout_s(); }
@@ -90,6 +95,7 @@ class System {
 
   std::int64_t frame_number_ = 0;  // of those processed
   KeyframeAge since_keyframe_;
+  std::vector<ClosedLoop> closed_loops_;
   int lost_frames_ = 0;  // in a row
   WorldId next_world_{0};
   /// Corrections move the world; what compares frames with their past goes on in coordinates that

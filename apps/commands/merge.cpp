@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "apps/commands.hpp"
+#include "stillmap/core/error.hpp"
+#include "stillmap/session/session_io.hpp"
+#include "stillmap/system/merge_sessions.hpp"
+
+namespace stillmap {
+namespace {
+
+struct MergeArguments {
+  std::string first;
+  std::string second;
+  std::string out;
+};
+
+void run_merge(const MergeArguments& arguments) {
+  const Session first = read_session(arguments.first);
+  const Session second = read_session(arguments.second);
+  const std::optional<MergedSessions> merged = merge_sessions(first, second, arguments.second);
+  if (!merged) {
+    throw Error(
+        "{} and {}: no place of one is recognised in the other; nothing was written. Sessions of "
+        "one room need views of the same things from about the same side",
+        arguments.first,
+        arguments.second);
+  }
+  write_session(arguments.out, merged->session);
+  print_output(fmt::format("merged      {} + {} key frames by {} {}\nwritten     {}\n",
+                           first.map.keyframes().size(),
+                           second.map.keyframes().size(),
+                           merged->loops,
+                           merged->loops == 1 ? "loop" : "loops",
+                           arguments.out));
+}
+
+}  // namespace
+
+void add_merge_command(CLI::App& app, CommandResult& /*result*/) {
+  CLI::App* command =
+      app.add_subcommand("merge", "Two saved sessions of one room as one, by places in common");
+  const auto arguments = std::make_shared<MergeArguments>();
+  command->add_option("A", arguments->first, "a map.stillmap; its coordinates stay")->required();
+  command->add_option("B", arguments->second, "another, of the same camera")->required();
+  command->add_option("--out", arguments->out, "file for both")->required();
+  command->footer(
+      "Examples:\n"
+      "  stillmap merge monday/map.stillmap tuesday/map.stillmap --out office.stillmap\n"
+      "  stillmap export office.stillmap --ply office.ply");
+  command->callback([arguments] { run_merge(*arguments); });
+}
+
+}  // namespace stillmap

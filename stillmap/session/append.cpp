@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/session/append.hpp"
+
+#include <limits>
+
+#include "stillmap/core/error.hpp"
+
+namespace stillmap {
+namespace {
+
+struct Offsets {
+  std::uint32_t keyframe, landmark, world, frame;
+};
+
+std::uint32_t end_of(std::span<const WorldId> worlds) {
+  return worlds.empty() ? 0 : worlds.back().value + 1;
+}
+
+std::uint32_t checked_sum(std::uint32_t a, std::uint32_t b) {
+  if (b >= std::numeric_limits<std::uint32_t>::max() - a) {
+    throw Error("these sessions together have more key frames, landmarks or frames than fit");
+  }
+  return a + b;
+}
+
+template <class Tag>
+Id<Tag> shifted(Id<Tag> id, std::uint32_t offset) {
+  return id.valid() ? Id<Tag>(id.value + offset) : id;
+}
+
+Keyframe shifted(Keyframe keyframe, const Offsets& by) {
+  keyframe.id = shifted(keyframe.id, by.keyframe);
+  keyframe.world = shifted(keyframe.world, by.world);
+  for (LandmarkId& id : keyframe.landmarks) id = shifted(id, by.landmark);
+  return keyframe;
+}
+
+Landmark shifted(Landmark landmark, const Offsets& by) {
+  landmark.id = shifted(landmark.id, by.landmark);
+  landmark.created_by = shifted(landmark.created_by, by.keyframe);
+  for (Observation& o : landmark.observations) o.keyframe = shifted(o.keyframe, by.keyframe);
+  return landmark;
+}
+
+MapParts appended(MapParts parts, const MapParts& second, const Offsets& by) {
+  for (const Keyframe& keyframe : second.keyframes) {
+    parts.keyframes.push_back(shifted(keyframe, by));
+  }
+  for (const Landmark& landmark : second.landmarks) {
+    parts.landmarks.push_back(shifted(landmark, by));
+  }
+  for (const auto& [id, anchor] : second.dropped_keyframes) {
+    parts.dropped_keyframes.emplace_back(
+        shifted(id, by.keyframe),
+        Anchor{shifted(anchor.keyframe, by.keyframe), anchor.T_anchor_dropped});
+  }
+  parts.next_keyframe = shifted(second.next_keyframe, by.keyframe);
+  parts.next_landmark = shifted(second.next_landmark, by.landmark);
+  return parts;
+}
+
+}  // namespace
+
+Session appended(const Session& first, const Session& second) {
+  const MapParts parts = first.map.parts(), others = second.map.parts();
+  const Offsets by{parts.next_keyframe.value,
+                   parts.next_landmark.value,
+                   end_of(first.map.worlds()),
+                   static_cast<std::uint32_t>(first.frames.size())};
+  (void)checked_sum(by.keyframe, others.next_keyframe.value);
+  (void)checked_sum(by.landmark, others.next_landmark.value);
+  (void)checked_sum(by.world, end_of(second.map.worlds()));
+  (void)checked_sum(by.frame, static_cast<std::uint32_t>(second.frames.size()));
+  Session both = first;
+  both.map = Map::from_parts(appended(parts, others, by), "the sessions together");
+  for (LoopEdge loop : second.loops) {
+    loop.a = shifted(loop.a, by.keyframe);
+    loop.b = shifted(loop.b, by.keyframe);
+    both.loops.push_back(loop);
+  }
+  for (FrameRecord frame : second.frames) {
+    frame.reference = shifted(frame.reference, by.keyframe);
+    both.frames.push_back(std::move(frame));
+  }
+  for (const ViewRecord& view : second.views) {
+    both.views.push_back({view.frame + by.frame, view.view});
+  }
+  return both;
+}
+
+}  // namespace stillmap
