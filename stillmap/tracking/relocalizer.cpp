@@ -15,11 +15,10 @@ namespace stillmap {
 namespace {
 
 // An image without a feature round here is hidden by somebody, or shows nothing.
-bool has_feature_near(const Features& features, const Eigen::Vector2f& px) {
-  constexpr float kNear_px = 20;
+bool has_feature_near(const Features& features, const Eigen::Vector2f& px, float radius_px) {
   bool found = false;
-  features.grid.visit_near(px, kNear_px, [&](std::uint32_t i) {
-    found = found || (features.px[i] - px).squaredNorm() < kNear_px * kNear_px;
+  features.grid.visit_near(px, radius_px, [&](std::uint32_t i) {
+    found = found || (features.px[i] - px).squaredNorm() < radius_px * radius_px;
   });
   return found;
 }
@@ -157,16 +156,20 @@ double Relocalizer::share_found(const Features& features,
                                 const Pose& pose) const {
   std::unordered_set<LandmarkId> found;
   for (const Match& match : pose.inliers) found.insert(match.landmark);
-  int expected = 0, seen = 0;
+  const auto near_px = static_cast<float>(camera_.width_px) / 32.0F;
+  double expected = 0;
+  int seen = 0;
   for (const LandmarkId id : keyframe.landmarks) {
     if (!id.valid()) continue;
-    const std::optional<Projection> projection = project_landmark(
-        camera_, measure_.level_scales(), pose.T_camera_world, map.landmark(id), 1.0);
-    if (!projection || !has_feature_near(features, projection->px)) continue;
-    ++expected;
+    const Landmark& landmark = map.landmark(id);
+    const std::optional<Projection> projection =
+        project_landmark(camera_, measure_.level_scales(), pose.T_camera_world, landmark, 1.0);
+    if (!projection || !has_feature_near(features, projection->px, near_px)) continue;
+    // As often as tracking has found it where it should be.
+    expected += (landmark.times_found + 1.0) / (landmark.times_expected + 1.0);
     seen += found.contains(id) ? 1 : 0;
   }
-  return expected > 0 ? static_cast<double>(seen) / expected : 0.0;
+  return expected > 0 ? seen / expected : 0.0;
 }
 
 std::optional<Relocalization> Relocalizer::verify(FrameId frame,

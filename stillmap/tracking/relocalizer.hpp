@@ -21,8 +21,12 @@ struct RelocalizerConfig {
   double search_radius_px = 15;
   int local_keyframes = 10;
   int min_inliers = 50;
+<<<<<<< HEAD
   double min_share = 0.25;
   int new_world_after_frames = 60;
+=======
+  double min_share = 0.5;
+>>>>>>> reloc
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -42,6 +46,7 @@ struct RelocalizerConfig {
     visit("min_inliers", self.min_inliers, FieldInfo{"that prove a place", "", 4, 1000});
     visit("min_share",
           self.min_share,
+<<<<<<< HEAD
           FieldInfo{"of the landmarks that should be seen, found", "", 0, 1});
     visit("new_world_after_frames",
           self.new_world_after_frames,
@@ -50,6 +55,9 @@ struct RelocalizerConfig {
                     "frames",
                     1,
                     1000000000});
+=======
+          FieldInfo{"of the landmarks that tracking would find there, found", "", 0, 2});
+>>>>>>> reloc
   }
 };
 
@@ -57,7 +65,9 @@ struct RelocalizerConfig {
 struct Relocalization {
   Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();
   std::vector<std::pair<std::uint32_t, LandmarkId>> matches;  ///< (feature, landmark), inliers
-  double share = 0;  ///< of the key frame's landmarks that should be seen, that are found
+  /// Landmarks of the key frame that are found, to those that tracking would find there, as often
+  /// as it found each of them when it should have seen it. About 1 at a known place.
+  double share = 0;
 };
 
 /// Finds a frame's pose without knowing where the camera is.

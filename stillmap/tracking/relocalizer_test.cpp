@@ -70,8 +70,10 @@ TEST(Relocalizer, FindsItAmongManyWrongMatches) {
     std::swap(seen.features.descriptors[i], seen.features.descriptors[i - 2]);
     seen.features.angle_deg[i] = seen.features.angle_deg[i - 2];
   }
-  const std::optional<Relocalization> found = make_relocalizer(world).find(
-      FrameId(0), seen.features, simulated.map, index_of(simulated.map));
+  // So half of the landmarks cannot be found.
+  const std::optional<Relocalization> found =
+      make_relocalizer(world, {.min_share = 0.3})
+          .find(FrameId(0), seen.features, simulated.map, index_of(simulated.map));
   ASSERT_TRUE(found);
   EXPECT_LT((found->T_camera_world * yawed(10)).translation().norm(), 0.01);
 }
