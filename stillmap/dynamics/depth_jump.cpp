@@ -4,10 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstring>
+#include <optional>
+#include <span>
 #include <vector>
 
+#include <opencv2/imgproc.hpp>
+
 #include "stillmap/core/error.hpp"
+#include "stillmap/core/vector_clones.hpp"
 
 namespace stillmap {
 namespace {
@@ -16,89 +20,80 @@ int cells_in(int pixels) {
   return (pixels + 1) / 2;
 }
 
-constexpr float kVeryLarge = 1e6F;
+constexpr float kNearest = 0.01F;  // metres; what comes nearer is not warped
+constexpr float kNothingNear = 1e9F;
+constexpr int kEnoughKnown = 7;  // of nine cells
 
-struct Nearest {
-  float min_m = 1e9F;
-  float max_m = 0.0F;
-  int known = 0;  // cells
-};
-
-/// The least and greatest known depth of the nine cells around one.
-Nearest around(const cv::Mat1f& cells, int row, int column) {
-  Nearest n;
-  for (int r = std::max(0, row - 1); r <= std::min(cells.rows - 1, row + 1); ++r) {
-    const float* z = cells[r];
-    for (int c = std::max(0, column - 1); c <= std::min(cells.cols - 1, column + 1); ++c) {
-      if (!(z[c] > 0)) continue;
-      n.min_m = std::min(n.min_m, z[c]);
-      n.max_m = std::max(n.max_m, z[c]);
-      ++n.known;
-    }
+/// For each known cell the least depth of the nine around it; 0 for the others.
+cv::Mat1f least_around(const cv::Mat1f& cells) {
+  cv::Mat1f known(cells.size()), least;
+  for (int row = 0; row < cells.rows; ++row) {
+    const float* z = cells[row];
+    float* target = known[row];
+    for (int c = 0; c < cells.cols; ++c) target[c] = z[c] > 0 ? z[c] : kNothingNear;
   }
-  return n;
+  cv::erode(known, least, cv::Mat());
+  for (int row = 0; row < cells.rows; ++row) {
+    const float* z = cells[row];
+    float* target = least[row];
+    for (int c = 0; c < cells.cols; ++c) target[c] = z[c] > 0 ? target[c] : 0.0F;
+  }
+  return least;
 }
 
-/// Finds the jumps of a row of pixels at a time.
-class JumpFinder {
- public:
-  JumpFinder(const cv::Mat1f& cells, const DepthJumpConfig& config, int columns)
-      : cells_(cells),
-        config_(config),
-        base_(static_cast<float>(config.jump_m)),
-        growth_(static_cast<float>(config.jump_per_m)),
-        before_(static_cast<std::size_t>(columns)),
-        candidate_(static_cast<std::size_t>(columns) + 8, 0) {}
-
-  void mark(const float* depth, int row, std::uint8_t* jumps) {
-    find_candidates(depth, row);
-    const std::size_t columns = before_.size();
-    for (std::size_t x = 0; x < columns; ++x) {
-      std::uint64_t eight = 0;
-      if (x % 8 == 0 && (std::memcpy(&eight, &candidate_[x], 8), eight == 0)) {
-        x += 7;
-        continue;
-      }
-      if (candidate_[x] == 0 || !(before_[x] > 0) || !(depth[x] > 0)) continue;
-      jumps[x] = jump_of(depth[x], around(cells_, row, static_cast<int>(x / 2)));
+/// The greatest depth of the nine cells around one; nothing where few are known. Beside an edge, a
+/// strip comes into view because the camera moves: nothing is known of it.
+std::optional<float> greatest_around(const cv::Mat1f& cells, int row, int column) {
+  float greatest = 0;
+  int known = 0;
+  for (int r = std::max(0, row - 1); r <= std::min(cells.rows - 1, row + 1); ++r) {
+    for (int c = std::max(0, column - 1); c <= std::min(cells.cols - 1, column + 1); ++c) {
+      greatest = std::max(greatest, cells(r, c));
+      known += cells(r, c) > 0 ? 1 : 0;
     }
   }
+  return known >= kEnoughKnown ? std::optional(greatest) : std::nullopt;
+}
 
- private:
-  /// Pixels that differ from their own cell: few, and only these are worth looking around for.
-  void find_candidates(const float* depth, int row) {
-    const float* expected = cells_[row];
-    const std::size_t columns = before_.size();
-    for (std::size_t x = 0; x < columns; ++x) before_[x] = expected[x / 2];
-    const float* before = before_.data();
-    std::uint8_t* candidate = candidate_.data();
-    const float base = base_, growth = growth_;
-    // Only what came nearer, unless both are asked for. Without a branch, to run on vectors: a
-    // missing depth (0) makes for no change here.
-    const float away = config_.revealed ? -1.0F : 0.0F;
-    for (std::size_t x = 0; x < columns; ++x) {
-      const float z = depth[x];
-      const float nearer = before[x] - z;
-      const float change = std::min(std::max(nearer, away * nearer), z * kVeryLarge);
-      candidate[x] = change > base + growth * z * z ? 1 : 0;
-    }
-  }
-
-  [[nodiscard]] std::uint8_t jump_of(float z, const Nearest& expected) const {
-    const float limit = base_ + growth_ * z * z;
-    if (z < expected.min_m - limit) return kCameNearer;
-    // Beside an edge, a strip comes into view because the camera moves: nothing is known of it.
-    const bool seen_before = expected.known >= 7;
-    const bool gone = config_.revealed && seen_before && z > expected.max_m + limit;
-    return gone ? kWentFarther : kNoJump;
-  }
-
-  const cv::Mat1f& cells_;
-  const DepthJumpConfig& config_;
-  float base_, growth_;
-  std::vector<float> before_;            // the cells' depth, for each pixel
-  std::vector<std::uint8_t> candidate_;  // and eight more
+/// How much a depth must change to be a jump.
+struct JumpLimit {
+  float base_m, per_m;
+  [[nodiscard]] float at(float z) const { return base_m + per_m * z * z; }
 };
+
+/// Marks in a row of pixels what is nearer than `least`, one value for two pixels. Without a
+/// branch, so that it runs on vectors.
+STILLMAP_VECTOR_CLONES
+void mark_nearer(std::span<const float> depth,
+                 const float* least,
+                 const JumpLimit& limit,
+                 std::uint8_t* jumps) {
+  const std::size_t cells = depth.size() / 2;
+  for (std::size_t c = 0; c < cells; ++c) {
+    const float z0 = depth[2 * c], z1 = depth[2 * c + 1];
+    const bool near0 = z0 > 0, near1 = z1 > 0;
+    jumps[2 * c] = near0 & (z0 < least[c] - limit.at(z0)) ? kCameNearer : kNoJump;
+    jumps[2 * c + 1] = near1 & (z1 < least[c] - limit.at(z1)) ? kCameNearer : kNoJump;
+  }
+  if (depth.size() % 2 == 0) return;
+  const float z = depth.back();
+  jumps[depth.size() - 1] = z > 0 && z < least[cells] - limit.at(z) ? kCameNearer : kNoJump;
+}
+
+/// Marks in a row of pixels what is farther than all the cells around.
+void mark_revealed(std::span<const float> depth,
+                   const cv::Mat1f& cells,
+                   int row,
+                   const JumpLimit& limit,
+                   std::uint8_t* jumps) {
+  for (std::size_t x = 0; x < depth.size(); ++x) {
+    const int column = static_cast<int>(x / 2);
+    const float z = depth[x], before = cells(row, column);
+    if (!(before > 0) || !(z - before > limit.at(z))) continue;
+    const std::optional<float> greatest = greatest_around(cells, row, column);
+    if (greatest && z > *greatest + limit.at(z)) jumps[x] = kWentFarther;
+  }
+}
 
 }  // namespace
 
@@ -151,10 +146,10 @@ WarpedDepth DepthWarper::warp(const DepthImage& previous,
                               const cv::Mat1b& without) const {
   STILLMAP_CHECK(previous.mat.rows == camera_.height_px && previous.mat.cols == camera_.width_px);
   const Eigen::Matrix<float, 3, 4> T = T_current_previous.matrix().topRows<3>().cast<float>();
-  WarpedDepth warped{cv::Mat1f(ray_x_.size(), 0.0F)};
-  const auto columns = static_cast<float>(ray_x_.cols), rows = static_cast<float>(ray_x_.rows);
   const auto width = static_cast<std::size_t>(ray_x_.cols);
-  std::vector<float> u(width), v(width), z(width), known(width);
+  std::vector<float> nearest(ray_x_.total() + 1, kNothingNear);  // one more for what has no cell
+  std::vector<float> z(width);
+  std::vector<std::int32_t> cells(width);
   for (int row = 0; row < ray_x_.rows; ++row) {
     const float* depth = previous.mat[2 * row];
     for (std::size_t c = 0; c < width; ++c) z[c] = depth[2 * c];
@@ -162,18 +157,20 @@ WarpedDepth DepthWarper::warp(const DepthImage& previous,
       const std::uint8_t* left_out = without[2 * row];
       for (std::size_t c = 0; c < width; ++c) z[c] = left_out[2 * c] != 0 ? 0.0F : z[c];
     }
-    std::ranges::copy(z, known.begin());
-    project_row(T, ray_x_[row], ray_y_[row], {u.data(), v.data(), z.data(), width});
+    project_row(T, ray_x_[row], ray_y_[row], {cells.data(), z.data(), width});
     for (std::size_t c = 0; c < width; ++c) {
-      const bool inside = u[c] >= 0 && v[c] >= 0 && u[c] < columns && v[c] < rows;
-      if (!inside || !(known[c] > 0) || !(z[c] > 0.01F)) continue;
-      float& cell = warped.mat(static_cast<int>(v[c]), static_cast<int>(u[c]));
-      if (cell == 0 || z[c] < cell) cell = z[c];
+      float& cell = nearest[static_cast<std::size_t>(cells[c])];
+      cell = std::min(cell, z[c]);
     }
   }
+  WarpedDepth warped{cv::Mat1f(ray_x_.size())};
+  std::ranges::transform(nearest.begin(), nearest.end() - 1, warped.mat[0], [](float m) {
+    return m < kNothingNear ? m : 0.0F;
+  });
   return warped;
 }
 
+STILLMAP_VECTOR_CLONES
 void DepthWarper::project_row(const Eigen::Matrix<float, 3, 4>& T,
                               const float* ray_x,
                               const float* ray_y,
@@ -188,6 +185,8 @@ void DepthWarper::project_row(const Eigen::Matrix<float, 3, 4>& T,
   const float a = T(0, 0), b = T(0, 1), c = T(0, 2), d = T(0, 3);
   const float e = T(1, 0), f = T(1, 1), g = T(1, 2), h = T(1, 3);
   const float i = T(2, 0), j = T(2, 1), k = T(2, 2), l = T(2, 3);
+  const auto columns = static_cast<float>(ray_x_.cols), rows = static_cast<float>(ray_x_.rows);
+  const std::int32_t stride = ray_x_.cols, none = stride * ray_x_.rows;
   for (std::size_t n = 0; n < row.size; ++n) {  // without a branch, so that it runs on vectors
     const float z = row.z[n];
     const float px = ray_x[n] * z, py = ray_y[n] * z;
@@ -196,8 +195,13 @@ void DepthWarper::project_row(const Eigen::Matrix<float, 3, 4>& T,
     const float y = (e * px + f * py + g * z + h) / depth;
     const float r2 = x * x + y * y;
     const float radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3));
-    row.u[n] = fx * (x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x)) + cx;
-    row.v[n] = fy * (y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y) + cy;
+    const float u = fx * (x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x)) + cx;
+    const float v = fy * (y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y) + cy;
+    const bool inside = (u >= 0) & (v >= 0) & (u < columns) & (v < rows);
+    const bool good = inside & (z > 0) & (depth > kNearest);
+    const auto left = static_cast<std::int32_t>(good ? u : 0.0F);
+    const auto top = static_cast<std::int32_t>(good ? v : 0.0F);
+    row.cell[n] = good ? top * stride + left : none;
     row.z[n] = depth;
   }
 }
@@ -208,9 +212,15 @@ cv::Mat1b depth_jumps(const DepthImage& current,
   const cv::Mat1f& cells = expected.mat;
   STILLMAP_CHECK(cells.rows == cells_in(current.mat.rows) &&
                  cells.cols == cells_in(current.mat.cols));
-  cv::Mat1b jumps(current.mat.size(), std::uint8_t{kNoJump});
-  JumpFinder finder(cells, config, jumps.cols);
-  for (int y = 0; y < jumps.rows; ++y) finder.mark(current.mat[y], y / 2, jumps[y]);
+  cv::Mat1b jumps(current.mat.size());
+  const JumpLimit limit{static_cast<float>(config.jump_m), static_cast<float>(config.jump_per_m)};
+  const cv::Mat1f least = least_around(cells);
+  const auto columns = static_cast<std::size_t>(jumps.cols);
+  for (int y = 0; y < jumps.rows; ++y) {
+    const std::span<const float> depth(current.mat[y], columns);
+    mark_nearer(depth, least[y / 2], limit, jumps[y]);
+    if (config.revealed) mark_revealed(depth, cells, y / 2, limit, jumps[y]);
+  }
   return jumps;
 }
 

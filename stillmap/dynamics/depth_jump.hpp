@@ -74,8 +74,8 @@ class DepthWarper {
 
  private:
   struct Row {
-    float *u, *v;  // cells, out
-    float* z;      // metres; in and out
+    std::int32_t* cell;  // out: its number, row by row; that after the last for none
+    float* z;            // metres; in and out
     std::size_t size;
   };
   void project_row(const Eigen::Matrix<float, 3, 4>& T,

@@ -21,12 +21,8 @@ struct RelocalizerConfig {
   double search_radius_px = 15;
   int local_keyframes = 10;
   int min_inliers = 50;
-<<<<<<< HEAD
-  double min_share = 0.25;
-  int new_world_after_frames = 60;
-=======
   double min_share = 0.5;
->>>>>>> reloc
+  int new_world_after_frames = 60;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -46,8 +42,7 @@ struct RelocalizerConfig {
     visit("min_inliers", self.min_inliers, FieldInfo{"that prove a place", "", 4, 1000});
     visit("min_share",
           self.min_share,
-<<<<<<< HEAD
-          FieldInfo{"of the landmarks that should be seen, found", "", 0, 1});
+          FieldInfo{"of the landmarks that tracking would find there, found", "", 0, 2});
     visit("new_world_after_frames",
           self.new_world_after_frames,
           FieldInfo{"lost for so long, the camera begins a new map, which joins the others when a "
@@ -55,9 +50,6 @@ struct RelocalizerConfig {
                     "frames",
                     1,
                     1000000000});
-=======
-          FieldInfo{"of the landmarks that tracking would find there, found", "", 0, 2});
->>>>>>> reloc
   }
 };
 
