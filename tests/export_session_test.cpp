@@ -96,10 +96,9 @@ TEST_F(ExportSession, AllFormatsAreThoseOfTheRunsFolder) {
   ASSERT_EQ(run("export result --ply b.ply --octomap b.ot --pcd b.pcd --grid b.yaml").err, "");
   EXPECT_TRUE(content("a.ply") == content("b.ply"));
   EXPECT_TRUE(content("a.pcd") == content("b.pcd"));
-  // Poses stand in keyframes.txt with some digits only, so that a voxel may differ.
   EXPECT_GT(content("a.ot").size(), 10000U);
-  EXPECT_EQ(content("a.ot").size(), content("b.ot").size());
-  EXPECT_EQ(content("a.pgm").size(), content("b.pgm").size());
+  EXPECT_TRUE(content("a.ot") == content("b.ot"));
+  EXPECT_TRUE(content("a.pgm") == content("b.pgm"));
 }
 
 TEST_F(ExportSession, RefusesWhatIsNoWholeSession) {
