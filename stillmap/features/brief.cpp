@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "stillmap/core/vector_clones.hpp"
 #include "stillmap/features/brief_pattern.hpp"
 
 namespace stillmap {
@@ -46,6 +47,7 @@ float rounded(float value) {
 
 }  // namespace
 
+STILLMAP_VECTOR_CLONES
 float patch_orientation_deg(const cv::Mat1b& image, cv::Point at) {
   int moment_x = 0, moment_y = 0;
   for (int v = -kPatchRadiusPx; v <= kPatchRadiusPx; ++v) {
@@ -61,6 +63,7 @@ float patch_orientation_deg(const cv::Mat1b& image, cv::Point at) {
   return cv::fastAtan2(static_cast<float>(moment_y), static_cast<float>(moment_x));
 }
 
+STILLMAP_VECTOR_CLONES
 Descriptor rotated_brief(const cv::Mat1b& blurred, cv::Point at, float angle_deg) {
   const float angle = angle_deg * std::numbers::pi_v<float> / 180.0F;
   const float c = std::cos(angle), s = std::sin(angle);

@@ -70,7 +70,7 @@ class Solver {
   std::vector<std::uint32_t> slot_;  // of each camera among the free ones
   std::uint32_t free_cameras_ = 0;
 
-  std::vector<Matrix6d> H_camera_;
+  std::vector<Matrix6d> H_camera_;  // lower triangles
   std::vector<Vector6d> g_camera_;
   std::vector<Eigen::Matrix3d> H_point_;
   std::vector<Eigen::Vector3d> g_point_;
@@ -122,19 +122,15 @@ void Solver::linearize() {
     }
     const Eigen::Vector3d r = reprojection_residual(problem_.camera, o.measurement, p_camera);
     const double weight = Huber(r.squaredNorm(), chi2_bound(o.measurement)).weight;
-    const Eigen::Matrix3d J_camera_point =
-        reprojection_jacobian(problem_.camera, o.measurement, p_camera);
-    const Eigen::Matrix3d J_point = J_camera_point * T.linear();
-    const Eigen::Matrix3d weighted_point = weight * J_point;
-    H_point_[o.point].noalias() += J_point.transpose() * weighted_point;
-    g_point_[o.point].noalias() += weighted_point.transpose() * r;
+    const PointEquations eq = point_equations(problem_.camera, o.measurement, p_camera, r, weight);
+    const Eigen::Matrix3d H_mixed = eq.H * T.linear();  // camera's axes by the world's
+    H_point_[o.point].noalias() += T.linear().transpose() * H_mixed;
+    g_point_[o.point].noalias() += T.linear().transpose() * eq.g;
     const std::uint32_t slot = slot_[o.camera];
     if (slot == kHeld) continue;
-    const Eigen::Matrix<double, 3, 6> J_pose = pose_jacobian(J_camera_point, p_camera);
-    const Eigen::Matrix<double, 3, 6> weighted_pose = weight * J_pose;
-    H_camera_[slot].noalias() += J_pose.transpose() * weighted_pose;
-    g_camera_[slot].noalias() += weighted_pose.transpose() * r;
-    W_[i].noalias() = J_pose.transpose() * weighted_point;
+    add_to_pose(eq, p_camera, H_camera_[slot], g_camera_[slot]);
+    W_[i].topRows<3>() = H_mixed;
+    W_[i].bottomRows<3>() = cross_columns(p_camera, H_mixed);
   }
 }
 
@@ -227,7 +223,7 @@ int Solver::minimize(int iterations) {
     cost = new_cost;
     damping = std::max(damping * 0.2, 1e-8);
     if (converged) return iteration + 1;
-    linearize();
+    if (iteration + 1 < iterations) linearize();
   }
   return iteration;
 }

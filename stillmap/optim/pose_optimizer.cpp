@@ -13,6 +13,7 @@ constexpr int kRounds = 4;
 constexpr int kRobustRounds = 2;
 constexpr int kIterations = 8;
 constexpr int kMinObservations = 3;
+constexpr double kConverged = 1e-6;  // relative decrease of the cost
 
 using Observations = std::span<const PoseObservation>;
 
@@ -29,7 +30,7 @@ double loss(double chi2, const PointMeasurement& measurement, bool robust) {
 }
 
 struct NormalEquations {
-  Matrix6d H = Matrix6d::Zero();
+  Matrix6d H = Matrix6d::Zero();  // the lower triangle
   Vector6d g = Vector6d::Zero();
   double cost = 0;
 };
@@ -46,12 +47,9 @@ NormalEquations linearize(const CameraModel& camera,
     const Eigen::Vector3d p_camera = T * observations[i].p_world;
     if (p_camera.z() < kMinPointDepth) continue;
     const Eigen::Vector3d r = reprojection_residual(camera, m, p_camera);
-    const Eigen::Matrix<double, 3, 6> J =
-        pose_jacobian(reprojection_jacobian(camera, m, p_camera), p_camera);
     const Huber huber(r.squaredNorm(), chi2_bound(m));
     const double weight = robust ? huber.weight : 1.0;
-    eq.H.noalias() += weight * J.transpose() * J;
-    eq.g.noalias() += weight * J.transpose() * r;
+    add_to_pose(point_equations(camera, m, p_camera, r, weight), p_camera, eq.H, eq.g);
     eq.cost += robust ? huber.cost : r.squaredNorm();
   }
   return eq;
@@ -91,7 +89,7 @@ Eigen::Isometry3d minimize(const CameraModel& camera,
     }
     T = candidate;
     damping = std::max(damping * 0.1, 1e-9);
-    if (eq.cost - cost < 1e-6 * eq.cost) break;
+    if (eq.cost - cost < kConverged * eq.cost) break;
   }
   return T;
 }

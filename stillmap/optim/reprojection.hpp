@@ -68,6 +68,54 @@ inline constexpr double kChi2Bound3 = 7.815;
   return J;
 }
 
+/// Normal equations of one measurement, J^T w J and J^T w r, by the point in camera coordinates.
+struct PointEquations {
+  Eigen::Matrix3d H;
+  Eigen::Vector3d g;
+};
+
+[[nodiscard]] inline PointEquations point_equations(const CameraModel& camera,
+                                                    const PointMeasurement& m,
+                                                    const Eigen::Vector3d& p_camera,
+                                                    const Eigen::Vector3d& residual,
+                                                    double weight) {
+  const Eigen::Matrix3d J = reprojection_jacobian(camera, m, p_camera);  // upper triangular
+  const double a = weight * J(0, 0), b = weight * J(1, 1);
+  const double c = weight * J(0, 2), d = weight * J(1, 2), e = weight * J(2, 2);
+  PointEquations eq;
+  eq.H << a * J(0, 0), 0, a * J(0, 2),  //
+      0, b * J(1, 1), b * J(1, 2),      //
+      a * J(0, 2), b * J(1, 2), c * J(0, 2) + d * J(1, 2) + e * J(2, 2);
+  eq.g << a * residual.x(), b * residual.y(),
+      c * residual.x() + d * residual.y() + e * residual.z();
+  return eq;
+}
+
+/// [p]x M: the cross product with each column, without the zeros that the matrix of it has.
+[[nodiscard]] inline Eigen::Matrix3d cross_columns(const Eigen::Vector3d& p,
+                                                   const Eigen::Matrix3d& M) {
+  Eigen::Matrix3d result;
+  result.row(0) = p.y() * M.row(2) - p.z() * M.row(1);
+  result.row(1) = p.z() * M.row(0) - p.x() * M.row(2);
+  result.row(2) = p.x() * M.row(1) - p.y() * M.row(0);
+  return result;
+}
+
+/// Adds them to the equations of the pose, of which `H` gets the lower triangle: with
+/// J_pose = J [I | -[p]x], what is by the pose follows from what is by the point, in a third of the
+/// multiplications.
+inline void add_to_pose(const PointEquations& eq,
+                        const Eigen::Vector3d& p_camera,
+                        Matrix6d& H,
+                        Vector6d& g) {
+  const Eigen::Matrix3d turned = cross_columns(p_camera, eq.H);
+  H.topLeftCorner<3, 3>() += eq.H;
+  H.bottomLeftCorner<3, 3>() += turned;
+  H.bottomRightCorner<3, 3>() += cross_columns(p_camera, turned.transpose());
+  g.head<3>() += eq.g;
+  g.tail<3>() += p_camera.cross(eq.g);
+}
+
 /// Huber's loss of a squared norm, and the weight that makes least squares follow it.
 struct Huber {
   double cost;

@@ -73,6 +73,24 @@ TEST(Reprojection, JacobianByThePoseEqualsCentralDifferences) {
   }
 }
 
+TEST(Reprojection, EquationsOfThePoseAreThoseOfItsJacobian) {
+  const PoseScene scene = make_pose_scene(5, 50, Depths::kSome, 1.0);
+  for (const PoseObservation& o : scene.observations) {
+    const Eigen::Vector3d p_camera = scene.T_camera_world * o.p_world;
+    const Eigen::Vector3d r = reprojection_residual(scene.camera, o.measurement, p_camera);
+    const Eigen::Matrix<double, 3, 6> J =
+        pose_jacobian(reprojection_jacobian(scene.camera, o.measurement, p_camera), p_camera);
+    Matrix6d H = Matrix6d::Identity();  // they are added to what is there
+    Vector6d g = Vector6d::Ones();
+    add_to_pose(point_equations(scene.camera, o.measurement, p_camera, r, 0.7), p_camera, H, g);
+    const Matrix6d expected_H = Matrix6d::Identity() + 0.7 * J.transpose() * J;
+    const Vector6d expected_g = Vector6d::Ones() + 0.7 * J.transpose() * r;
+    const Matrix6d both = H.selfadjointView<Eigen::Lower>();
+    EXPECT_LT((both - expected_H).norm(), 1e-12 * expected_H.norm());
+    EXPECT_LT((g - expected_g).norm(), 1e-12 * expected_g.norm());
+  }
+}
+
 // Huber 1964: r^2 inside |r| <= k, 2 k |r| - k^2 outside.
 TEST(Huber, IsItsDefinition) {
   for (const double k : {0.5, 1.0, 2.448}) {

@@ -32,7 +32,7 @@ struct ViewRecord {
 struct Session {
   CameraModel camera;
   std::string config_yaml;  ///< the settings that it was made with
-  Map map;
+  Map map = Map({});
   std::vector<LoopEdge> loops;
   std::vector<FrameRecord> frames;  ///< in the order in which they were tracked
   std::vector<ViewRecord> views;    ///< by frame, ascending
