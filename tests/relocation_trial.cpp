@@ -14,7 +14,7 @@ namespace stillmap {
 
 RelocationTrial::RelocationTrial(const SystemConfig& config, const CameraModel& camera)
     : camera_(camera),
-      system_(config, camera, 1),
+      system_(config, camera, {.threads = 1}),
       objects_(config.dynamics.object_tracking(), FillRule::kBothWays) {}
 
 void RelocationTrial::show(const TrialView& view) {

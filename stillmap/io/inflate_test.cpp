@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stillmap/io/inflate.hpp"
 
+#include <algorithm>
 #include <random>
 #include <string>
 
@@ -31,18 +32,6 @@ std::string deflated(const std::string& bytes, Deflating how) {
   result.resize(stream.total_out);
   deflateEnd(&stream);
   return result;
-}
-
-// Whether zlib takes it for a whole stream of `size` bytes.
-bool zlib_takes(const std::string& stream, std::size_t size) {
-  std::string bytes(size + 1, '\0');
-  uLongf count = bytes.size();
-  uLong used = stream.size();
-  return uncompress2(reinterpret_cast<Bytef*>(bytes.data()),
-                     &count,
-                     reinterpret_cast<const Bytef*>(stream.data()),
-                     &used) == Z_OK &&
-         count == size && used == stream.size();
 }
 
 std::string inflated(const std::string& stream, std::size_t size) {
@@ -126,7 +115,8 @@ TEST(InflateWhole, RefusesEveryTruncationAndWhatFollows) {
   }
 }
 
-TEST(InflateWhole, TakesNoDamagedStreamThatZlibRefuses) {
+// Some bits matter to nobody: those of the window that was used, or behind the last block.
+TEST(InflateWhole, NeverGivesAnythingElseForADamagedStream) {
   std::mt19937 rng(4);
   for (int trial = 0; trial < 30000; ++trial) {
     const std::string bytes = material(1 + rng() % 600, 3.0, 0.1, rng);
@@ -136,8 +126,11 @@ TEST(InflateWhole, TakesNoDamagedStreamThatZlibRefuses) {
       const std::size_t at = rng() % stream.size();
       stream[at] = static_cast<char>(static_cast<unsigned>(stream[at]) ^ (1U << rng() % 8));
     }
-    const bool taken = inflate_whole(stream, bytes.size()).has_value();
-    ASSERT_LE(taken, zlib_takes(stream, bytes.size())) << trial;
+    const std::optional<std::vector<std::uint8_t>> taken = inflate_whole(stream, bytes.size());
+    if (!taken) continue;
+    ASSERT_TRUE(std::ranges::equal(*taken, bytes, {}, {}, [](char c) {
+      return static_cast<std::uint8_t>(c);
+    })) << trial;
   }
 }
 

@@ -25,7 +25,7 @@ struct Settings {
 int main() {
   const stillmap::CameraModel camera = stillmap::builtin_camera("tum_fr3");
   fmt::print("camera {}: {} x {}\n", camera.name, camera.width_px, camera.height_px);
-  stillmap::System slam({}, camera, 2);
+  stillmap::System slam({}, camera, {.threads = 2});
   if (!slam.finish().trajectory.empty()) return 1;
   if (!stillmap::optimize_pose_graph({}, {}).T_world.empty()) return 1;
   Settings settings;
