@@ -98,11 +98,13 @@ TEST(LoopCloser, LandmarksOfBothEndsBecomeOne) {
 
 TEST(LoopCloser, WhatContradictsTheOthersIsRefusedAndChangesNothing) {
   SimulatedMap round = drifted_round(world(), {});
+  const double before_m = mean_error_m(round);
   const std::vector<FoundLoop> found = find_loops(round, world());
   ASSERT_GE(found.size(), 3U);
   std::vector<LoopEdge> loops;
   for (const FoundLoop& right : found) ASSERT_TRUE(close(round, loops, right));
   EXPECT_EQ(loops.size(), found.size());
+  EXPECT_LT(mean_error_m(round), before_m / 3);
   FoundLoop wrong = found.back();
   wrong.verified.T_a_b = Eigen::Translation3d(0.5, 0, 0) * wrong.verified.T_a_b;
   const MapParts before = round.map.parts();
