@@ -2,6 +2,7 @@
 #include "stillmap/loop_closing/loop_closer.hpp"
 
 #include <map>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -15,6 +16,9 @@ const SimulatedWorld& world() {
   static const SimulatedWorld kWorld({}, simulated_camera());
   return kWorld;
 }
+
+constexpr ObservationNoise kNoWrongDescriptors{
+    .pixel_sigma_px = 0.5, .inverse_depth_sigma = 0.004, .flipped_bits = 10};
 
 bool close(SimulatedMap& simulated, std::vector<LoopEdge>& loops, const FoundLoop& found) {
   return close_loop(simulated.map, loops, found, world().camera(), loop_measure(world()), {});
@@ -94,6 +98,48 @@ TEST(LoopCloser, LandmarksOfBothEndsBecomeOne) {
   // Also those of the neighbours, which the loop itself does not name.
   const KeyframeId before_later(found.later.value - 2);
   EXPECT_LT(doubled(round, found.earlier, before_later), 30U);
+}
+
+// Takes every third landmark from a key frame.
+void rob(SimulatedMap& simulated, KeyframeId id) {
+  const std::vector<LandmarkId> landmarks = simulated.map.keyframe(id).landmarks;
+  for (std::size_t i = 0; i < landmarks.size(); i += 3) {
+    if (landmarks[i].valid()) simulated.map.remove_observation(landmarks[i], id);
+  }
+}
+
+// Features of `a` without a landmark where `b` knows one of their point.
+std::size_t missing(const SimulatedMap& simulated, KeyframeId a, KeyframeId b) {
+  std::set<std::uint32_t> known;
+  const std::vector<LandmarkId>& landmarks_a = simulated.map.keyframe(a).landmarks;
+  const std::vector<LandmarkId>& landmarks_b = simulated.map.keyframe(b).landmarks;
+  for (std::size_t i = 0; i < landmarks_b.size(); ++i) {
+    if (landmarks_b[i].valid()) known.insert(simulated.points[b.index()][i]);
+  }
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < landmarks_a.size(); ++i) {
+    const bool is_known = known.contains(simulated.points[a.index()][i]);
+    count += !landmarks_a[i].valid() && is_known ? 1 : 0;
+  }
+  return count;
+}
+
+TEST(LoopCloser, FeaturesOfOneEndGetTheLandmarksOfTheOther) {
+  SimulatedMap round =
+      drifted_round(world(), {.drift = Vector6d::Zero(), .noise = kNoWrongDescriptors});
+  const FoundLoop found = find_loops(round, world()).back();
+  const KeyframeId beside_later(found.later.value - 1), beside_earlier(found.earlier.value + 1);
+  for (const KeyframeId id : {beside_later, beside_earlier}) rob(round, id);
+  const std::size_t in_later = missing(round, beside_later, found.earlier);
+  const std::size_t in_earlier = missing(round, beside_earlier, found.later);
+  ASSERT_GT(in_later, 50U);
+  ASSERT_GT(in_earlier, 50U);
+  std::vector<LoopEdge> loops;
+  ASSERT_TRUE(close(round, loops, found));
+  round.map.check_consistency();
+  EXPECT_LT(missing(round, beside_later, found.earlier), in_later / 3);
+  EXPECT_LT(missing(round, beside_earlier, found.later), in_earlier / 3);
+  EXPECT_EQ(wrong_observations(round), 0U);
 }
 
 TEST(LoopCloser, WhatContradictsTheOthersIsRefusedAndChangesNothing) {
