@@ -142,6 +142,30 @@ TEST(LoopCloser, FeaturesOfOneEndGetTheLandmarksOfTheOther) {
   EXPECT_EQ(wrong_observations(round), 0U);
 }
 
+TEST(LoopCloser, WhatTheLoopMatchedBecomesOneAlsoWhereNothingElseIsLookedFor) {
+  SimulatedMap round = drifted_round(world(), {});
+  const FoundLoop found = find_loops(round, world()).back();
+  for (const KeyframeId id : {found.earlier, found.later}) rob(round, id);
+  const Keyframe earlier = round.map.keyframe(found.earlier),
+                 later = round.map.keyframe(found.later);
+  LoopConfig config;
+  config.fusion_radius_px = 1e-9;
+  std::vector<LoopEdge> loops;
+  ASSERT_TRUE(close_loop(round.map, loops, found, world().camera(), loop_measure(world()), config));
+  round.map.check_consistency();
+  int old_kept = 0, taken_over = 0;
+  for (const auto& [in_earlier, in_later] : found.verified.matches) {
+    const LandmarkId old = earlier.landmarks[in_earlier], recent = later.landmarks[in_later];
+    const LandmarkId now = round.map.keyframe(found.earlier).landmarks[in_earlier];
+    EXPECT_EQ(now, round.map.keyframe(found.later).landmarks[in_later]);
+    EXPECT_EQ(now, old.valid() ? old : recent);
+    old_kept += old.valid() && !recent.valid() ? 1 : 0;
+    taken_over += recent.valid() && !old.valid() ? 1 : 0;
+  }
+  EXPECT_GT(old_kept, 10);
+  EXPECT_GT(taken_over, 10);
+}
+
 TEST(LoopCloser, WhatContradictsTheOthersIsRefusedAndChangesNothing) {
   SimulatedMap round = drifted_round(world(), {});
   const double before_m = mean_error_m(round);
