@@ -14,7 +14,6 @@
 namespace stillmap {
 namespace {
 
-constexpr std::uint32_t kMaxId = std::uint32_t{1} << 31U;
 constexpr int kMaxTimes = 1 << 30;
 
 bool is_number(double value) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,6 +23,8 @@ struct MapParts {
   LandmarkId next_landmark{0};
 };
 
+/// Ids of key frames, landmarks and worlds are less.
+inline constexpr std::uint32_t kMaxId = std::uint32_t{1} << 31U;
 /// Features of a key frame; the place index can name no more.
 inline constexpr std::size_t kMaxFeatures = 65535;
 /// Beyond, squares and sums would lose all meaning.

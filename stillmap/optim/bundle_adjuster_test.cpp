@@ -161,6 +161,35 @@ TEST(BundleAdjuster, CostStaysFiniteWhenAnOutlierEndsBehindTheCamera) {
   EXPECT_LT(pose_distance(result.T_camera_world[moving], T_true), 1e-3);
 }
 
+// A point so much too far that each step that depth asks for puts it behind its camera, until
+// damping has grown too strong for any camera to move within the iterations there are: from 3 m,
+// with an inverse depth of 1 / m, the linearised step leads to 2 * 3 - 3 * 3 = -3 m.
+TEST(BundleAdjuster, OnePointThatAStepPutsBehindItsCameraDoesNotBlockTheOthers) {
+  const BundleProblem truth = make_bundle({.seed = 27});
+  BundleProblem problem = perturbed(truth, 28, 0.03);
+  const std::uint32_t held = 0, point = static_cast<std::uint32_t>(problem.points.size());
+  const Eigen::Vector2d px(300, 200);
+  problem.points.push_back(problem.T_camera_world[held].inverse() *
+                           problem.camera.unproject(px, 3.0));
+  PointMeasurement m;
+  m.px = px;
+  m.inverse_depth = 1.0;
+  m.inverse_depth_weight = 1.0 / kInverseDepthSigma;
+  problem.observations.push_back({held, point, m});
+  const BundleResult result = adjust_bundle(problem, {});
+  EXPECT_TRUE(all_finite(result));
+  for (std::size_t c = 0; c < truth.held.size(); ++c) {
+    EXPECT_LT(pose_distance(result.T_camera_world[c], truth.T_camera_world[c]), 1e-4) << c;
+  }
+  for (std::size_t p = 0; p < truth.points.size(); ++p) {
+    EXPECT_LT((result.points[p] - truth.points[p]).norm(), 1e-3) << p;
+  }
+  // Only that point's observation does not fit.
+  EXPECT_EQ(std::accumulate(result.inlier.begin(), result.inlier.end(), std::size_t{0}),
+            truth.observations.size());
+  EXPECT_EQ(result.inlier.back(), 0);
+}
+
 TEST(BundleAdjuster, WithoutFreeCamerasPointsAloneMove) {
   const BundleProblem truth = make_bundle({.seed = 17});
   BundleProblem problem = perturbed(truth, 18, 0.03);

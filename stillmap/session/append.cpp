@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stillmap/session/append.hpp"
 
-#include <limits>
-
 #include "stillmap/core/error.hpp"
 
 namespace stillmap {
@@ -16,11 +14,11 @@ std::uint32_t end_of(std::span<const WorldId> worlds) {
   return worlds.empty() ? 0 : worlds.back().value + 1;
 }
 
-std::uint32_t checked_sum(std::uint32_t a, std::uint32_t b) {
-  if (b >= std::numeric_limits<std::uint32_t>::max() - a) {
-    throw Error("these sessions together have more key frames, landmarks or frames than fit");
-  }
-  return a + b;
+// Of numbers that are no greater than kMaxId.
+void check_sum(std::uint32_t a, std::uint32_t b) {
+  if (b <= kMaxId - a) return;
+  throw Error("these sessions together have more key frames, landmarks or frames than fit ({})",
+              kMaxId);
 }
 
 template <class Tag>
@@ -67,10 +65,10 @@ Session appended(const Session& first, const Session& second) {
                    parts.next_landmark.value,
                    end_of(first.map.worlds()),
                    static_cast<std::uint32_t>(first.frames.size())};
-  (void)checked_sum(by.keyframe, others.next_keyframe.value);
-  (void)checked_sum(by.landmark, others.next_landmark.value);
-  (void)checked_sum(by.world, end_of(second.map.worlds()));
-  (void)checked_sum(by.frame, static_cast<std::uint32_t>(second.frames.size()));
+  check_sum(by.keyframe, others.next_keyframe.value);
+  check_sum(by.landmark, others.next_landmark.value);
+  check_sum(by.world, end_of(second.map.worlds()));
+  check_sum(by.frame, static_cast<std::uint32_t>(second.frames.size()));
   Session both = first;
   both.map = Map::from_parts(appended(parts, others, by), "the sessions together");
   for (LoopEdge loop : second.loops) {

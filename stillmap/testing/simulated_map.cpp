@@ -11,6 +11,7 @@ KeyframeId add_bare_keyframe(SimulatedMap& simulated,
                              Observed observed) {
   Keyframe keyframe;
   keyframe.frame = FrameId(static_cast<std::uint32_t>(simulated.points.size()));
+  keyframe.world = simulated.current_world;
   keyframe.T_world_camera = T_world_camera;
   keyframe.features = std::make_shared<const Features>(std::move(observed.features));
   simulated.T_world_keyframe.push_back(T_world_camera);

@@ -17,6 +17,7 @@ struct SimulatedMap {
   std::vector<Eigen::Isometry3d> T_world_keyframe;        ///< true poses
   std::vector<std::vector<std::uint32_t>> points;         ///< per key frame and feature
   std::map<std::uint32_t, LandmarkId> landmark_of_point;  ///< as made; merged ones stay
+  WorldId current_world{0};                               ///< of key frames to come
 
   explicit SimulatedMap(const SimulatedWorld& world) : map(world.level_scales()) {}
 };
