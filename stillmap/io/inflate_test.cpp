@@ -116,16 +116,14 @@ TEST(InflateWhole, RefusesEveryTruncationAndWhatFollows) {
 }
 
 // Some bits matter to nobody: those of the window that was used, or behind the last block.
-TEST(InflateWhole, NeverGivesAnythingElseForADamagedStream) {
+TEST(InflateWhole, NeverGivesAnythingElseForAChangedBit) {
   std::mt19937 rng(4);
   for (int trial = 0; trial < 30000; ++trial) {
     const std::string bytes = material(1 + rng() % 600, 3.0, 0.1, rng);
     const int strategy = static_cast<int>(rng() % 5);
     std::string stream = deflated(bytes, {static_cast<int>(rng() % 10), strategy});
-    for (unsigned flips = 1 + rng() % 3; flips > 0; --flips) {
-      const std::size_t at = rng() % stream.size();
-      stream[at] = static_cast<char>(static_cast<unsigned>(stream[at]) ^ (1U << rng() % 8));
-    }
+    const std::size_t at = rng() % stream.size();
+    stream[at] = static_cast<char>(static_cast<unsigned>(stream[at]) ^ (1U << rng() % 8));
     const std::optional<std::vector<std::uint8_t>> taken = inflate_whole(stream, bytes.size());
     if (!taken) continue;
     ASSERT_TRUE(std::ranges::equal(*taken, bytes, {}, {}, [](char c) {

@@ -182,9 +182,9 @@ class SmallSlam {
     RgbdFrame frame;
     frame.id = FrameId(k);
     frame.stamp.seconds = time_s;
-    TrackedFrame tracked = k == 0
-                               ? tracker_.start(frame, std::make_shared<const Features>(seen.features))
-                               : tracker_.track(frame, seen.features, simulated_.map, PlaceIndex());
+    TrackedFrame tracked =
+        k == 0 ? tracker_.start(frame, std::make_shared<const Features>(seen.features))
+               : tracker_.track(frame, seen.features, simulated_.map, PlaceIndex());
     if (k > 0 && has_pose(tracked)) count(tracked);
     since_keyframe_.most_inliers = std::max(since_keyframe_.most_inliers, tracked.inliers);
     ++since_keyframe_.frames;
