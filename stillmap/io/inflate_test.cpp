@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stillmap/io/inflate.hpp"
 
-#include <algorithm>
 #include <random>
 #include <string>
 
@@ -32,6 +31,20 @@ std::string deflated(const std::string& bytes, Deflating how) {
   result.resize(stream.total_out);
   deflateEnd(&stream);
   return result;
+}
+
+// Nothing when zlib does not take it for a whole stream of `size` bytes.
+std::optional<std::string> by_zlib(const std::string& stream, std::size_t size) {
+  std::string bytes(size + 1, '\0');
+  uLongf count = bytes.size();
+  uLong used = stream.size();
+  const int status = uncompress2(reinterpret_cast<Bytef*>(bytes.data()),
+                                 &count,
+                                 reinterpret_cast<const Bytef*>(stream.data()),
+                                 &used);
+  if (status != Z_OK || count != size || used != stream.size()) return std::nullopt;
+  bytes.resize(size);
+  return bytes;
 }
 
 std::string inflated(const std::string& stream, std::size_t size) {
@@ -115,8 +128,9 @@ TEST(InflateWhole, RefusesEveryTruncationAndWhatFollows) {
   }
 }
 
-// Some bits matter to nobody: those of the window that was used, or behind the last block.
-TEST(InflateWhole, NeverGivesAnythingElseForAChangedBit) {
+// Some bits matter to nobody, such as those behind the last block, which zlib may still refuse; and
+// rarely what a changed stream says has the checksum of what it should say, which zlib takes too.
+TEST(InflateWhole, OfAChangedStreamGivesTheSameOrWhatZlibGives) {
   std::mt19937 rng(4);
   for (int trial = 0; trial < 30000; ++trial) {
     const std::string bytes = material(1 + rng() % 600, 3.0, 0.1, rng);
@@ -126,9 +140,8 @@ TEST(InflateWhole, NeverGivesAnythingElseForAChangedBit) {
     stream[at] = static_cast<char>(static_cast<unsigned>(stream[at]) ^ (1U << rng() % 8));
     const std::optional<std::vector<std::uint8_t>> taken = inflate_whole(stream, bytes.size());
     if (!taken) continue;
-    ASSERT_TRUE(std::ranges::equal(*taken, bytes, {}, {}, [](char c) {
-      return static_cast<std::uint8_t>(c);
-    })) << trial;
+    const std::string found(taken->begin(), taken->end());
+    ASSERT_EQ(found, by_zlib(stream, bytes.size()).value_or(bytes)) << trial;
   }
 }
 
