@@ -16,7 +16,7 @@ using Matrix63d = Eigen::Matrix<double, 6, 3>;
 constexpr std::uint32_t kHeld = ~std::uint32_t{0};
 constexpr double kConverged = 1e-5;  // relative decrease of the cost
 // Squared error, in sigmas, of a point that a step has put behind a camera, where none is defined:
-// that of a gross outlier, since a step that does so to one of ten thousand points may still be good.
+// that of a gross outlier. A step that does so to one of ten thousand points may still be good.
 constexpr double kBehind = 1e4;
 constexpr double kMaxDamping = 1e8;
 
