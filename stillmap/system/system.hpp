@@ -50,6 +50,11 @@ class System {
   /// Throws Error for settings that contradict each other.
   System(const SystemConfig& config, const CameraModel& camera, const SystemOptions& options);
 
+  /// Jobs that have not begun are dropped; one that runs is waited for, as it uses what is here.
+  ~System() { worker_.reset(); }
+  System(const System&) = delete;
+  System& operator=(const System&) = delete;
+
   /// Goes on from a saved session, once the camera sees a place that it knows. Before the first
   /// frame. Throws Error when the session is of another camera or of another image pyramid.
   void load(Session session);
