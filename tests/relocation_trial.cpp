@@ -14,7 +14,7 @@ namespace stillmap {
 
 RelocationTrial::RelocationTrial(const SystemConfig& config, const CameraModel& camera)
     : camera_(camera),
-      system_(config, camera, {.threads = 1}),
+      system_(std::make_unique<System>(config, camera, SystemOptions{.threads = 1})),
       objects_(config.dynamics.object_tracking(), FillRule::kBothWays) {}
 
 void RelocationTrial::show(const TrialView& view) {
@@ -51,7 +51,7 @@ void RelocationTrial::push(const RgbdFrame& picture,
 
 void RelocationTrial::process(FrameObjects objects) {
   STILLMAP_CHECK(shown_[processed_]->id == objects.frame);
-  const FrameResult result = system_.process(shown_[processed_], std::move(objects));
+  const FrameResult result = system_->process(shown_[processed_], std::move(objects));
   shown_[processed_].reset();  // its images take much room
   TrialFrame& frame = frames_[processed_++];
   frame.status = result.tracked.status;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -58,7 +59,7 @@ class RelocationTrial {
   void process(FrameObjects objects);
 
   CameraModel camera_;
-  System system_;
+  std::unique_ptr<System> system_;  // stays where it is when a trial moves
   ObjectTracker objects_;
   std::vector<FramePtr> shown_;
   std::vector<TrialFrame> frames_;
