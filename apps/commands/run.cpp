@@ -17,6 +17,7 @@
 #include "stillmap/io/atomic_file.hpp"
 #include "stillmap/io/camera_io.hpp"
 #include "stillmap/io/trajectory_io.hpp"
+#include "stillmap/report/time_summary.hpp"
 #include "stillmap/report/tracking_gaps.hpp"
 #include "stillmap/run/map_evaluation.hpp"
 #include "stillmap/run/run_folder.hpp"
@@ -41,6 +42,8 @@ struct RunArguments {
   std::size_t stride = 1;
   int threads = 2;
   bool live = false;
+  double speed = 1;
+  std::string replay;
   std::string load;
   bool localize_only = false;
   std::string groundtruth;
@@ -123,6 +126,20 @@ std::string map_line(const RunReport& report) {
   return text + (report.map_at_true_poses ? ", at true poses\n" : "\n");
 }
 
+std::string live_line(const RunReport& report) {
+  if (!report.live) return {};
+  const LiveReport& live = *report.live;
+  std::string text = fmt::format("live        {} of {} frames dropped, {} looked at",
+                                 live.dropped,
+                                 report.frames_total,
+                                 live.looked_at);
+  if (const std::optional<TimeSummary> latency = summarize_times(live.latency_ms)) {
+    text += fmt::format(
+        "; pose after {:.0f} ms (median), {:.0f} ms (95 %)", latency->median, latency->p95);
+  }
+  return text + "\n";
+}
+
 std::string gap_lines(const RunReport& report) {
   constexpr std::size_t kMost = 5;
   const std::vector<TrackingGap> gaps = tracking_gaps(report.lost, report.estimate);
@@ -148,6 +165,7 @@ std::string summary(const RunArguments& arguments, const RunReport& report) {
   if (!report.loops.empty()) {
     text += fmt::format("loops       {} closed\n", report.loops.size());
   }
+  text += live_line(report);
   text += map_line(report);
   text += fmt::format("time        {:.1f} s, {:.1f} frames a second\n",
                       *report.wall_s,
@@ -162,6 +180,15 @@ void save_session(Session& session, const RunArguments& arguments, const std::st
   if (arguments.localize_only) return;
   session.config_yaml = settings;
   write_session(std::filesystem::path(arguments.out) / "map.stillmap", session);
+}
+
+std::optional<LiveOptions> live_options(const RunArguments& arguments,
+                                        const TumSequence& sequence) {
+  if (!arguments.live) return std::nullopt;
+  LiveOptions live;
+  live.speed = arguments.speed;
+  if (!arguments.replay.empty()) live.record = read_live_record(arguments.replay, sequence);
+  return live;
 }
 
 int run(const RunArguments& arguments) {
@@ -180,9 +207,10 @@ int run(const RunArguments& arguments) {
   const std::optional<SequenceTruth> truth = read_sequence_truth(sequence);
   const CameraModel& camera = sequence.camera();
   const std::unique_ptr<Segmenter> segmenter =
-      arguments.segmenter == "none"
-          ? nullptr
-          : make_segmenter(arguments.segmenter, {camera.width_px, camera.height_px});
+      arguments.segmenter == "none" ? nullptr
+                                    : make_segmenter(arguments.segmenter,
+                                                     {camera.width_px, camera.height_px},
+                                                     {.threads = arguments.live ? 1 : 2});
   RunOptions options;
   if (!arguments.load.empty()) options.start = read_session(arguments.load);
   options.localize_only = arguments.localize_only;
@@ -191,7 +219,7 @@ int run(const RunArguments& arguments) {
   if (!arguments.frames.empty()) options.frames = parse_frames(arguments.frames);
   options.frames.stride = arguments.stride;
   options.threads = arguments.threads;
-  options.live = arguments.live;
+  options.live = live_options(arguments, sequence);
   if (truth || arguments.poses == "truth") options.groundtruth = groundtruth;
   ProgressBar progress("frames");
   options.on_progress = [&](std::size_t done, std::size_t total) { progress.show(done, total); };
@@ -206,7 +234,9 @@ int run(const RunArguments& arguments) {
   evaluate(report);
   choose_map(run, arguments);
   if (truth) evaluate_maps(run, *truth);
-  write_run_folder(arguments.out, run.result, report, run.objects_jsonl);
+  const std::optional<std::string> live_lines =
+      arguments.live ? std::optional(live_jsonl(run.live_record, sequence)) : std::nullopt;
+  write_run_folder(arguments.out, run.result, report, {run.objects_jsonl, live_lines});
   save_session(run.session, arguments, report.config_yaml);
   print_output(summary(arguments, report));
   return run.result.lost_at_end ? kLostForGood : 0;
@@ -247,9 +277,20 @@ void add_settings(CLI::App& command, RunArguments& arguments) {
   command.add_flag("--localize-only",
                    arguments.localize_only,
                    "with --load: track against that map and leave it as it is");
-  command.add_flag("--live",
-                   arguments.live,
-                   "look at no later frame: what a network misses is carried on from earlier ones");
+  CLI::Option* live = command.add_flag(
+      "--live",
+      arguments.live,
+      "as with a camera: frames come at their times and are dropped when nobody has time for them; "
+      "the network looks at some of them beside the rest");
+  command.add_option("--speed", arguments.speed, "with --live: how much faster time goes")
+      ->needs(live)
+      ->check(CLI::Range(0.001, 1000.0))
+      ->capture_default_str();
+  command
+      .add_option("--replay",
+                  arguments.replay,
+                  "with --live: the live.jsonl of an earlier run, to make it again bit by bit")
+      ->needs(live);
   command
       .add_option("--poses",
                   arguments.poses,
@@ -274,6 +315,8 @@ void add_run_command(CLI::App& app, CommandResult& result) {
       "  stillmap run rgbd_dataset_freiburg1_xyz --out result\n"
       "  stillmap run office --out result --frames 0:300 --set cloud.voxel_size_m=0.02\n"
       "  stillmap run office --out more --load result/map.stillmap --localize-only\n"
+      "  stillmap run office --out live --live --segmenter auto\n"
+      "  stillmap run office --out again --live --replay live/live.jsonl --segmenter auto\n"
       "Exit code 3 says that tracking was lost for good: the results end before the sequence "
       "does.");
   command->callback([arguments, &result] { result.exit_code = run(*arguments); });

@@ -106,8 +106,8 @@ class MotionStates {
  public:
   MotionStates(const MotionStateConfig& config, const CameraModel& camera);
 
-  /// Takes a frame, of a later stamp, with what DynamicObjects made of it; gives the motion of its
-  /// objects in their order.
+  /// Takes a frame, with what DynamicObjects made of it; gives the motion of its objects in their
+  /// order. Frames in which an object was detected itself come in the order of their stamps.
   [[nodiscard]] std::vector<ObjectMotion> update(const FrameObjects& objects,
                                                  const DepthImage& depth,
                                                  std::span<const ObjectState> states,

@@ -128,7 +128,8 @@ std::optional<FrameObjects> ObjectTracker::push(ObservedFrame frame) {
                  frame.detections.mask.mat.size() == frame.depth.mat.size());
   const auto search = static_cast<std::size_t>(config_.search_frames);
   // A gap may be as long as the search both ways.
-  std::erase_if(tracks_, [&](const Track& t) { return pushed_ - t.seen_at > 2 * search; });
+  const std::size_t longest_gap = std::max<std::size_t>(2 * search, 1);
+  std::erase_if(tracks_, [&](const Track& t) { return pushed_ - t.seen_at > longest_gap; });
   std::vector<TrackId> tracks = associate(frame);
   held_.push_back({std::move(frame), pushed_, std::move(tracks)});
   ++pushed_;
@@ -136,8 +137,19 @@ std::optional<FrameObjects> ObjectTracker::push(ObservedFrame frame) {
   if (pushed_ <= delay) return std::nullopt;
   const std::size_t leaving = left_++;
   FrameObjects result = leave(held_[leaving - held_.front().position]);
-  while (!held_.empty() && held_.front().position + search <= leaving) held_.pop_front();
+  // carry_to() needs the last one in any case.
+  const std::size_t keep = rule_ == FillRule::kCausal ? std::max<std::size_t>(search, 1) : search;
+  while (!held_.empty() && held_.front().position + keep <= leaving) held_.pop_front();
   return result;
+}
+
+FrameObjects ObjectTracker::carry_to(FrameId frame,
+                                     const Stamp& stamp,
+                                     const DepthImage& depth) const {
+  STILLMAP_CHECK(rule_ == FillRule::kCausal);
+  if (held_.empty()) return {frame, stamp, {}, {}};
+  STILLMAP_CHECK(held_.back().frame.detections.stamp.seconds < stamp.seconds);
+  return leave({{frame, {stamp, {}, {}}, depth}, pushed_, {}, false});
 }
 
 std::vector<FrameObjects> ObjectTracker::flush() {
@@ -153,7 +165,9 @@ std::optional<ObjectTracker::Sighting> ObjectTracker::sighting(const Track& trac
                                                                const Held& held,
                                                                int direction) const {
   const std::size_t here = held.position - held_.front().position;
-  for (int distance = 1; distance <= config_.search_frames; ++distance) {
+  // The last frame that was looked at tells of one that was not, however far fills may reach.
+  const int reach = held.looked_at ? config_.search_frames : std::max(config_.search_frames, 1);
+  for (int distance = 1; distance <= reach; ++distance) {
     const auto step = static_cast<std::size_t>(distance);
     if (direction < 0 ? step > here : here + step >= held_.size()) break;
     const Held& other = held_[direction < 0 ? here - step : here + step];
@@ -202,10 +216,17 @@ CarriedMask ObjectTracker::carried_mask(const Fill& fill, const Held& held) cons
   return carry_mask(view, fill.box, held.frame.depth, rule);
 }
 
+// Once may have been an error of the network; but nothing else tells of a frame that it has not
+// seen.
+bool ObjectTracker::is_real(const Track& track, const Held& held) const {
+  return track.sightings >= config_.min_sightings ||
+         (!held.looked_at && track.seen_at + 1 == held.position);
+}
+
 FrameObjects ObjectTracker::leave(const Held& held) const {
   FrameObjects result = detected_objects(held.frame, held.tracks);
   for (const Track& track : tracks_) {
-    if (track.sightings < config_.min_sightings || result.objects.size() == kMostObjects) continue;
+    if (!is_real(track, held) || result.objects.size() == kMostObjects) continue;
     if (std::ranges::find(held.tracks, track.id) != held.tracks.end()) continue;
     const std::optional<Fill> fill = fill_of(track, held);
     if (!fill || is_duplicate(track, *fill, held)) continue;

@@ -67,6 +67,12 @@ class ObjectTracker {
   /// The end: the frames that have not left, in order. Nothing may be pushed afterwards.
   [[nodiscard]] std::vector<FrameObjects> flush();
 
+  /// What is known of a frame that no network has looked at, later than those pushed: all that they
+  /// show of late, each object filled in. With kCausal only.
+  [[nodiscard]] FrameObjects carry_to(FrameId frame,
+                                      const Stamp& stamp,
+                                      const DepthImage& depth) const;
+
  private:
   struct Track {
     TrackId id;
@@ -81,6 +87,7 @@ class ObjectTracker {
     ObservedFrame frame;
     std::size_t position = 0;     // in the stream
     std::vector<TrackId> tracks;  // of frame.detections.objects
+    bool looked_at = true;        // by a network
   };
   struct Sighting {
     const Held* held = nullptr;
@@ -97,6 +104,7 @@ class ObjectTracker {
   [[nodiscard]] std::vector<TrackId> associate(const ObservedFrame& frame);
   void see(Track& track, const DetectedObject& object, double stamp_s) const;
   [[nodiscard]] FrameObjects leave(const Held& held) const;
+  [[nodiscard]] bool is_real(const Track& track, const Held& held) const;
   [[nodiscard]] std::optional<Fill> fill_of(const Track& track, const Held& held) const;
   [[nodiscard]] std::optional<Sighting> sighting(const Track& track,
                                                  const Held& held,

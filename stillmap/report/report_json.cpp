@@ -91,6 +91,15 @@ Json time_json(const RunReport& report) {
           {"stages_ms", stages}};
 }
 
+Json live_json(const std::optional<LiveReport>& live) {
+  if (!live) return nullptr;
+  return {{"speed", optional_json(live->speed)},
+          {"dropped", live->dropped},
+          {"looked_at", live->looked_at},
+          {"objects_age_frames", times_json(live->objects_age_frames)},
+          {"latency_ms", times_json(live->latency_ms)}};
+}
+
 Json bounds_json(const PointCloud* map) {
   if (map == nullptr || map->empty()) return {{"bounds_min", nullptr}, {"bounds_max", nullptr}};
   Eigen::Vector3f low = map->positions.front();
@@ -163,6 +172,7 @@ std::string report_json(const RunReport& report) {
                      {"loops", loops_json(report)},
                      {"time", time_json(report)},
                      {"memory", {{"peak_mb", optional_json(report.peak_memory_mb)}}},
+                     {"live", live_json(report.live)},
                      {"ate", ate_json(report.ate)},
                      {"rpe", rpe_json(report.rpe)},
                      {"map", map_json(report)},

@@ -86,14 +86,23 @@ struct ObjectSummary {
   std::vector<MotionCount> motions;  ///< how it moved in how many frames
 };
 
-/// All that the reports of a run say. A plain value: whoever ran the run fills it. What is not
-/// known stays empty: `nullopt`, or no elements.
 /// A place that was recognised, and the map corrected.
 struct LoopClosure {
   Stamp earlier;  ///< of the key frame that saw it before
   Stamp later;
 };
 
+/// How a run kept up with its camera.
+struct LiveReport {
+  std::optional<double> speed;             ///< of the camera's clock; none for a run made again
+  std::size_t dropped = 0;                 ///< frames that came while others were worked on
+  std::size_t looked_at = 0;               ///< frames that the network has looked at
+  std::vector<double> objects_age_frames;  ///< of each frame that knew of objects
+  std::vector<double> latency_ms;          ///< from a frame's arrival to its pose
+};
+
+/// All that the reports of a run say. A plain value: whoever ran the run fills it. What is not
+/// known stays empty: `nullopt`, or no elements.
 struct RunReport {
   std::string version;      ///< of the program
   std::string sequence;     ///< name or path of the sequence; any text
@@ -119,6 +128,7 @@ struct RunReport {
   std::vector<StageTimes> stages;     ///< in the order in which they run
   std::vector<int> tracked_features;  ///< of each frame, in order
   std::optional<double> peak_memory_mb;
+  std::optional<LiveReport> live;  ///< of a live run
 
   std::string dynamics_mode;  ///< what was done about what moves
   /// In the order of their numbers; nullopt when nothing looked for objects.

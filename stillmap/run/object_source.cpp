@@ -7,10 +7,8 @@
 
 namespace stillmap {
 
-ObjectSource::ObjectSource(const Segmenter* segmenter,
-                           const ObjectTrackerConfig& config,
-                           FillRule rule)
-    : segmenter_(segmenter), tracker_(config, rule) {}
+ObjectSource::ObjectSource(const Segmenter* segmenter, const ObjectTrackerConfig& config)
+    : segmenter_(segmenter), tracker_(config, FillRule::kBothWays) {}
 
 std::vector<FrameWithObjects> ObjectSource::push(FramePtr frame) {
   std::vector<FrameWithObjects> ready;

@@ -17,12 +17,12 @@ struct FrameWithObjects {
   FrameObjects objects;
 };
 
-/// Finds the objects of frames and follows them. With FillRule::kBothWays a frame comes out some
-/// frames after it went in, because later frames say what it misses.
+/// Finds the objects of frames and follows them. A frame comes out some frames after it went in,
+/// because later frames say what it misses.
 class ObjectSource {
  public:
   /// `segmenter` may be null: then frames come out at once, without objects. It outlives this.
-  ObjectSource(const Segmenter* segmenter, const ObjectTrackerConfig& config, FillRule rule);
+  ObjectSource(const Segmenter* segmenter, const ObjectTrackerConfig& config);
 
   /// Whether there is something that finds objects.
   [[nodiscard]] bool looks() const { return segmenter_ != nullptr; }

@@ -10,6 +10,18 @@
 #include "stillmap/report/report_json.hpp"
 
 namespace stillmap {
+namespace {
+
+void write_or_remove(const std::filesystem::path& file, const std::optional<std::string>& lines) {
+  if (lines) {
+    write_file_atomically(file, *lines);
+  } else {
+    std::error_code ignored;
+    std::filesystem::remove(file, ignored);
+  }
+}
+
+}  // namespace
 
 void prepare_run_folder(const std::filesystem::path& folder) {
   std::error_code error;
@@ -27,17 +39,13 @@ void prepare_run_folder(const std::filesystem::path& folder) {
 void write_run_folder(const std::filesystem::path& folder,
                       const RunResult& result,
                       const RunReport& report,
-                      const std::optional<std::string>& objects_jsonl) {
+                      const FrameLines& lines) {
   write_file_atomically(folder / "trajectory.txt", format_trajectory(result.trajectory));
   write_file_atomically(folder / "keyframes.txt", format_trajectory(result.keyframes));
   write_file_atomically(folder / "config.yaml", report.config_yaml);
   write_file_atomically(folder / "camera.yaml", format_camera_yaml(report.camera));
-  if (objects_jsonl) {
-    write_file_atomically(folder / "objects.jsonl", *objects_jsonl);
-  } else {
-    std::error_code ignored;
-    std::filesystem::remove(folder / "objects.jsonl", ignored);
-  }
+  write_or_remove(folder / "objects.jsonl", lines.objects_jsonl);
+  write_or_remove(folder / "live.jsonl", lines.live_jsonl);
   write_file_atomically(folder / "map.ply", encode_ply(result.map));
   write_file_atomically(folder / "report.json", report_json(report));
   write_file_atomically(folder / "report.html", report_html(report));

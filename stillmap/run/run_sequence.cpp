@@ -4,21 +4,13 @@
 #include <algorithm>
 #include <charconv>
 
-#include <sys/resource.h>
-
 #include "stillmap/core/error.hpp"
-#include "stillmap/eval/map_alignment.hpp"
-#include "stillmap/eval/pose_at.hpp"
 #include "stillmap/run/frame_preparation.hpp"
-#include "stillmap/run/object_log.hpp"
-#include "stillmap/run/sample_frame.hpp"
-#include "stillmap/system/stopwatch.hpp"
+#include "stillmap/run/run_live.hpp"
+#include "stillmap/run/run_log.hpp"
 
 namespace stillmap {
 namespace {
-
-constexpr std::size_t kSamples = 8;
-constexpr std::size_t kFramesPerDamaged = 50;
 
 std::vector<FrameId> select_frames(const TumSequence& sequence, const FrameSelection& selection) {
   const std::size_t end = std::min(selection.end.value_or(sequence.size()), sequence.size());
@@ -35,84 +27,16 @@ std::vector<FrameId> select_frames(const TumSequence& sequence, const FrameSelec
   return frames;
 }
 
-double peak_memory_mb() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024.0;
-}
-
-void add_stage_time(std::vector<StageTimes>& stages, std::string_view name, double ms) {
-  const auto at = std::ranges::find(stages, name, &StageTimes::name);
-  if (at != stages.end()) {
-    at->ms.push_back(ms);
-  } else {
-    stages.push_back({std::string(name), {ms}});
+// As fast as it goes, no frame left out.
+void run_through(System& system, RunLog& log, FramePreparation& prepared) {
+  while (std::optional<PreparedFrames> next = prepared.next()) {
+    if (!next->at_end) log.add_stage_time("reading", next->source.reading_ms);
+    if (!next->source.damage.empty()) log.skip(next->source);
+    if (next->segmentation_ms) log.add_stage_time("segmentation", *next->segmentation_ms);
+    for (FrameWithObjects& ready : next->ready) {
+      log.add(*ready.frame, system.process(ready.frame, std::move(ready.objects)));
+    }
   }
-}
-
-void add_frame(RunReport& report, const RgbdFrame& frame, const FrameResult& result) {
-  report.frame_ms.push_back(result.pose_ms);
-  report.tracked_features.push_back(result.tracked.inliers);
-  for (const StageTime& time : result.stages) add_stage_time(report.stages, time.stage, time.ms);
-  if (!has_pose(result.tracked)) report.lost.push_back(frame.stamp);
-}
-
-void skip_frame(RunReport& report,
-                const Stamp& stamp,
-                const std::string& damage,
-                const RunOptions& options) {
-  report.skipped.push_back({stamp, damage});
-  const std::size_t allowed = report.frames_total / kFramesPerDamaged;
-  if (report.skipped.size() > allowed) {
-    throw Error("{} ({} damaged so far; at most {} of {} frames may be)",
-                damage,
-                report.skipped.size(),
-                allowed,
-                report.frames_total);
-  }
-  report.warnings.push_back("frame skipped: " + damage);
-  if (options.on_warning) options.on_warning(report.warnings.back());
-}
-
-void add_map_at_true_poses(SequenceRun& run, const System& system, const Trajectory& truth) {
-  const std::optional<Eigen::Isometry3d> alignment = map_alignment(truth, run.result.trajectory);
-  if (!alignment) return;
-  const Eigen::Isometry3d T_world_truth = alignment->inverse();
-  std::vector<std::optional<Eigen::Isometry3d>> poses;
-  for (const StampedPose& frame : run.result.trajectory) {
-    poses.push_back(pose_at(truth, frame.stamp.seconds));
-    if (poses.back()) poses.back() = T_world_truth * *poses.back();
-  }
-  const auto unknown = std::ranges::count_if(poses, [](const auto& pose) { return !pose; });
-  if (unknown > 0) {
-    run.report.warnings.push_back(
-        fmt::format("{} of {} frames have no true pose and add nothing to the map at true poses",
-                    unknown,
-                    poses.size()));
-  }
-  run.map_at_true_poses = system.cloud_with_poses(poses);
-}
-
-void warn_of_frames_elsewhere(RunReport& report, const RunOptions& options) {
-  if (report.frames_elsewhere == 0) return;
-  report.warnings.push_back(
-      fmt::format("{} frames were tracked after a loss in a map of their own, which no known place "
-                  "joins to this one: they are not in the results",
-                  report.frames_elsewhere));
-  if (options.on_warning) options.on_warning(report.warnings.back());
-}
-
-void finish_report(SequenceRun& run, const TumSequence& sequence, const System& system) {
-  RunReport& report = run.report;
-  report.camera = sequence.camera();
-  report.camera.readout_s = system.readout_s();
-  report.frames_tracked = run.result.trajectory.size();
-  report.estimate = run.result.trajectory;
-  report.keyframes = run.result.keyframes;
-  report.frames_elsewhere = run.result.frames_elsewhere;
-  for (const ClosedLoop& loop : run.result.loops)
-    report.loops.push_back({loop.earlier, loop.later});
-  report.peak_memory_mb = peak_memory_mb();
 }
 
 }  // namespace
@@ -140,60 +64,22 @@ FrameSelection parse_frames(const std::string& text) {
 SequenceRun run_sequence(const TumSequence& sequence,
                          const SystemConfig& config,
                          RunOptions options) {
-  Stopwatch wall;
   const std::vector<FrameId> frames = select_frames(sequence, options.frames);
+  RunLog log(sequence, config, options, frames.size());
   System system(config, sequence.camera(), {options.threads, options.localize_only});
   if (options.start) system.load(std::move(*options.start));
-  SequenceRun run;
-  RunReport& report = run.report;
-  report.sequence = sequence.name();
-  report.frames_total = frames.size();
-
-  report.dynamics_mode = config.dynamics.mode;
-  const bool with_objects = options.segmenter != nullptr && config.dynamics.mode != "off";
-
-  std::vector<LoggedFrame> log;
-  std::size_t done = 0;
-  const auto process = [&](FrameWithObjects ready) {
-    const FrameResult result = system.process(ready.frame, std::move(ready.objects));
-    add_frame(report, *ready.frame, result);
-    if (with_objects) log.push_back(log_frame(ready.frame->stamp, result));
-    if (done * kSamples / frames.size() != (done + 1) * kSamples / frames.size()) {
-      report.samples.push_back(make_sample(*ready.frame, result));
-    }
-    ++done;
-    if (options.on_progress) options.on_progress(done, frames.size());
-  };
-  FramePreparation frames_ahead(
-      FrameSource(sequence, frames),
-      ObjectSource(options.segmenter,
-                   config.dynamics.object_tracking(),
-                   options.live ? FillRule::kCausal : FillRule::kBothWays),
-      options.threads > 1);
-  while (std::optional<PreparedFrames> next = frames_ahead.next()) {
-    if (!next->at_end) add_stage_time(report.stages, "reading", next->source.reading_ms);
-    if (!next->source.damage.empty()) {
-      skip_frame(report, sequence.entry(next->source.id).stamp, next->source.damage, options);
-      ++done;
-    }
-    if (next->segmentation_ms) {
-      add_stage_time(report.stages, "segmentation", *next->segmentation_ms);
-    }
-    for (FrameWithObjects& frame : next->ready) process(std::move(frame));
+  if (options.live) {
+    LiveResult live = run_live({sequence, frames, config, options}, system, log);
+    SequenceRun run = log.finish(system);
+    run.live_record = std::move(live.record);
+    run.report.live = std::move(live.report);
+    return run;
   }
-  Stopwatch finishing;
-  run.result = system.finish();
-  add_stage_time(report.stages, "finishing", finishing.lap_ms());
-  if (with_objects) {
-    run.objects_jsonl = objects_jsonl(log, run.result.trajectory);
-    report.objects = summarize_objects(log);
-  }
-  finish_report(run, sequence, system);
-  warn_of_frames_elsewhere(report, options);
-  report.wall_s = wall.lap_ms() / 1000.0;
-  if (options.groundtruth) add_map_at_true_poses(run, system, *options.groundtruth);
-  run.session = system.take_session();
-  return run;
+  FramePreparation prepared(FrameSource(sequence, frames),
+                            ObjectSource(options.segmenter, config.dynamics.object_tracking()),
+                            options.threads > 1);
+  run_through(system, log, prepared);
+  return log.finish(system);
 }
 
 }  // namespace stillmap

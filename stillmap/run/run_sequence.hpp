@@ -8,6 +8,8 @@
 
 #include "stillmap/io/tum_sequence.hpp"
 #include "stillmap/report/run_report.hpp"
+#include "stillmap/run/clock.hpp"
+#include "stillmap/run/live_record.hpp"
 #include "stillmap/segmentation/segmenter.hpp"
 #include "stillmap/system/system.hpp"
 
@@ -23,10 +25,17 @@ struct FrameSelection {
 /// Reads "A:B", "A:", ":B", with A < B, counted from 0, B left out. Throws Error for anything else.
 [[nodiscard]] FrameSelection parse_frames(const std::string& text);
 
+/// A run as with a camera: no frame waits for later ones, or for the network.
+struct LiveOptions {
+  double speed = 1;                  ///< of the clock that frames come by
+  std::optional<LiveRecord> record;  ///< instead of by the clock: what was decided then
+  Clock* clock = nullptr;            ///< not owned; the machine's where null
+};
+
 struct RunOptions {
   FrameSelection frames;
   int threads = 2;
-  bool live = false;  ///< no frame waits for later ones: what a network misses is carried forward
+  std::optional<LiveOptions> live;       ///< instead of as fast as it goes, with no frame left out
   std::optional<Session> start;          ///< a saved session that the run goes on from
   bool localize_only = false;            ///< the map stays as `start` has it
   const Segmenter* segmenter = nullptr;  ///< what finds objects; none where null
@@ -45,6 +54,7 @@ struct SequenceRun {
   /// The map with the frames where ground truth has them, in the world of the run; frames without a
   /// true pose add nothing to it. Nothing without ground truth, or with too little to align.
   std::optional<PointCloud> map_at_true_poses;
+  LiveRecord live_record;  ///< of a live run: what the clock has decided
   /// What objects.jsonl says; nullopt when nothing looked for objects or nothing is done about
   /// them.
   std::optional<std::string> objects_jsonl;
@@ -52,7 +62,8 @@ struct SequenceRun {
 
 /// Runs the system over a sequence. A damaged image inside a long sequence costs its frame, with a
 /// warning; more than one frame in fifty, or any in a sequence below fifty frames, is an Error, and
-/// so is an image of the wrong kind or size. The result does not depend on the number of threads.
+/// so is an image of the wrong kind or size. The result does not depend on the number of threads;
+/// that of a live run depends on the clock, by what its record says and nothing else.
 [[nodiscard]] SequenceRun run_sequence(const TumSequence& sequence,
                                        const SystemConfig& config,
                                        RunOptions options);

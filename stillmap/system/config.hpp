@@ -29,6 +29,20 @@ struct TrackingConfig {
   }
 };
 
+/// Runs with a camera.
+struct LiveConfig {
+  int look_gap_frames = 3;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit(
+        "look_gap_frames",
+        self.look_gap_frames,
+        FieldInfo{
+            "--live: the network looks at no more than one in so many frames", "frames", 1, 1000});
+  }
+};
+
 /// All settings of a run. The defaults need no file.
 struct SystemConfig {
   std::uint32_t seed = 0;
@@ -40,6 +54,7 @@ struct SystemConfig {
   MappingConfig mapping;
   LoopConfig loop;
   CloudConfig cloud;
+  LiveConfig live;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -52,6 +67,7 @@ struct SystemConfig {
     visit.group("mapping", self.mapping);
     visit.group("loop", self.loop);
     visit.group("cloud", self.cloud);
+    visit.group("live", self.live);
   }
 
   /// Rules that concern several values. Throws Error naming the keys.

@@ -129,8 +129,7 @@ SiftedFeatures DynamicsStage::sift(
 void DynamicsStage::remember(const RgbdFrame& frame,
                              const Eigen::Isometry3d& T_world_camera,
                              FrameDynamics& dynamics) {
-  dynamics.motions =
-      motions_.update(dynamics.objects, frame.depth, dynamics.judged.states, T_world_camera);
+  learn_motions(frame, T_world_camera, dynamics);
   last_ = {frame.depth, T_world_camera};
   // A third of the age's precision is enough, and a third of the memory.
   const int step = std::max(1, config_.compare_frames / 3);

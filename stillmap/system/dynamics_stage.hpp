@@ -89,6 +89,15 @@ class DynamicsStage {
                 const Eigen::Isometry3d& T_world_camera,
                 FrameDynamics& dynamics);
 
+  /// How the objects of a frame that was remembered with other masks move by its own, `dynamics`;
+  /// later frames' objects are not known yet.
+  void learn_motions(const RgbdFrame& frame,
+                     const Eigen::Isometry3d& T_world_camera,
+                     FrameDynamics& dynamics) {
+    dynamics.motions =
+        motions_.update(dynamics.objects, frame.depth, dynamics.judged.states, T_world_camera);
+  }
+
   /// Tracking was lost: the next frame with a pose does not follow on the last. What was seen
   /// before stays known, for it is in the same world: when found again near there, people stand out
   /// at once.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <string_view>
 #include <vector>
 
@@ -8,6 +9,13 @@
 #include "stillmap/tracking/tracked_frame.hpp"
 
 namespace stillmap {
+
+/// Whose objects a frame comes with.
+enum class MaskOrigin : std::uint8_t {
+  kOwn,      ///< those found in it; also where nothing looks for objects
+  kAwaited,  ///< carried forward from earlier frames; its own are being looked for
+  kCarried,  ///< carried forward; nobody looks for its own
+};
 
 struct StageTime {
   std::string_view stage;

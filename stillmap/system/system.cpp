@@ -2,8 +2,10 @@
 #include "stillmap/system/system.hpp"
 
 #include <algorithm>
+#include <set>
 
 #include "stillmap/core/error.hpp"
+#include "stillmap/features/feature_selection.hpp"
 #include "stillmap/session/session_map.hpp"
 #include "stillmap/system/merge_sessions.hpp"
 #include "stillmap/system/stopwatch.hpp"
@@ -16,6 +18,7 @@ const SystemConfig& checked(const SystemConfig& config) {
   return config;
 }
 
+constexpr std::size_t kMostAwaiting = 30;             // frames; their images are held
 constexpr std::int64_t kEnd = std::int64_t{1} << 62;  // after all frames, and what they lead to
 
 }  // namespace
@@ -55,7 +58,7 @@ void System::load(Session session) {
   if (!worlds.empty()) next_world_ = WorldId(worlds.back().value + 1);
 }
 
-FrameResult System::process(const FramePtr& frame, FrameObjects objects) {
+FrameResult System::process(const FramePtr& frame, FrameObjects objects, MaskOrigin origin) {
   Stopwatch total, stage;
   FrameResult result;
   update_map(frame_number_);
@@ -78,7 +81,7 @@ FrameResult System::process(const FramePtr& frame, FrameObjects objects) {
     result.stages.push_back({"feature sifting", stage.lap_ms()});
   }
 
-  result.tracked = track(*frame, std::move(features));
+  result.tracked = track(*frame, std::move(features), origin);
   result.stages.push_back({"tracking", stage.lap_ms()});
   result.pose_ms = total.lap_ms();
 
@@ -86,11 +89,13 @@ FrameResult System::process(const FramePtr& frame, FrameObjects objects) {
   since_keyframe_.most_inliers = std::max(since_keyframe_.most_inliers, tracked.inliers);
   ++since_keyframe_.frames;
   if (tracked.status == TrackingStatus::kInitialized ||
-      (!localize_only_ && wants_keyframe(config_.keyframe, tracked, since_keyframe_))) {
+      (origin == MaskOrigin::kOwn && !localize_only_ &&
+       wants_keyframe(config_.keyframe, tracked, since_keyframe_))) {
     tracked.reference = insert_keyframe(*frame, tracked);
+    tracker_.set_reference(tracked.reference, session_.map);
     result.is_keyframe = true;
   }
-  remember(frame, result);
+  remember(frame, result, origin);
   result.stages.push_back({"keyframe", stage.lap_ms()});
   ++frame_number_;
   return result;
@@ -124,10 +129,14 @@ void System::apply(const MapUpdate& update) {
 }
 
 // At the first frames, and when nothing known has been seen for long.
-bool System::may_begin_world(const Features& features) const {
+bool System::needs_own_objects() const {
   if (localize_only_) return false;
   const bool long_lost = lost_frames_ >= config_.relocalization.new_world_after_frames;
-  if (!session_.map.keyframes().empty() && !long_lost) return false;
+  return session_.map.keyframes().empty() || long_lost;
+}
+
+bool System::may_begin_world(const Features& features) const {
+  if (!needs_own_objects()) return false;
   int with_depth = 0;
   for (std::size_t i = 0; i < features.size(); ++i) {
     with_depth += measure_.has_depth(features, i) ? 1 : 0;
@@ -135,9 +144,9 @@ bool System::may_begin_world(const Features& features) const {
   return with_depth >= config_.tracking.tracker.min_inliers;
 }
 
-TrackedFrame System::track(const RgbdFrame& frame, Features features) {
+TrackedFrame System::track(const RgbdFrame& frame, Features features, MaskOrigin origin) {
   TrackedFrame tracked = tracker_.track(frame, std::move(features), session_.map, loops_.places());
-  if (!has_pose(tracked) && may_begin_world(*tracked.features)) {
+  if (!has_pose(tracked) && origin == MaskOrigin::kOwn && may_begin_world(*tracked.features)) {
     return tracker_.start(frame, tracked.features);
   }
   if (!localize_only_) count_landmarks(tracked);
@@ -174,7 +183,6 @@ KeyframeId System::insert_keyframe(const RgbdFrame& frame, const TrackedFrame& t
   create_landmarks_from_depth(map, id, camera_, measure_, config_.mapping.creation);
   (void)map.take_changes();  // the owner knows them; only windows hand changes on
   loops_.add_keyframe(map.keyframe(id));
-  tracker_.set_reference(id, map);
   since_keyframe_ = {};
 
   std::vector<KeyframeId> core = mapping_core(map, id, config_.mapping);
@@ -186,8 +194,54 @@ KeyframeId System::insert_keyframe(const RgbdFrame& frame, const TrackedFrame& t
   return id;
 }
 
+void System::take_objects(FrameObjects objects) {
+  while (!awaiting_.empty() && awaiting_.front().frame->id < objects.frame) awaiting_.pop_front();
+  if (awaiting_.empty() || awaiting_.front().frame->id != objects.frame) return;
+  AwaitingObjects awaiting = std::move(awaiting_.front());
+  awaiting_.pop_front();
+  update_map(frame_number_);
+
+  FrameRecord& record = session_.frames[awaiting.record];
+  const RgbdFrame& frame = *awaiting.frame;
+  awaiting.tracked.T_world_camera = T_world_frame(session_, record);
+  FrameDynamics dynamics;
+  if (dynamics_.enabled()) {
+    const Eigen::Isometry3d T = T_odometry_world_ * awaiting.tracked.T_world_camera;
+    dynamics = dynamics_.judge(frame, std::move(objects), T);
+    dynamics_.learn_motions(frame, T, dynamics);
+  }
+  const TrackedFrame tracked = off_masks(awaiting, dynamics.excluded);
+  const bool is_keyframe = wants_keyframe(config_.keyframe, tracked, since_keyframe_);
+  if (is_keyframe) record = {frame.stamp, insert_keyframe(frame, tracked)};
+  views_.add(session_, {awaiting.frame, dynamics, awaiting.record, is_keyframe}, frame_number_);
+}
+
+// The frame as it would be had it come with these masks, its landmarks as the map has them now.
+TrackedFrame System::off_masks(const AwaitingObjects& awaiting, const cv::Mat1b& excluded) const {
+  TrackedFrame tracked = awaiting.tracked;
+  const Features& features = *tracked.features;
+  std::vector<std::uint8_t> keep(features.size(), 1);
+  for (std::size_t i = 0; i < keep.size() && !excluded.empty(); ++i) {
+    const Eigen::Vector2i px = features.raw_px[i].array().round().cast<int>();
+    keep[i] = excluded(px.y(), px.x()) == 0 ? 1 : 0;
+  }
+  std::vector<LandmarkId> landmarks;
+  std::set<LandmarkId> seen;  // two may have been merged since
+  tracked.inliers = 0;
+  for (std::size_t i = 0; i < keep.size(); ++i) {
+    if (keep[i] == 0) continue;
+    const LandmarkId id = session_.map.resolve(tracked.landmarks[i]);
+    const bool is_first = id.valid() && seen.insert(id).second;
+    landmarks.push_back(is_first ? id : LandmarkId{});
+    tracked.inliers += is_first ? 1 : 0;
+  }
+  tracked.landmarks = std::move(landmarks);
+  tracked.features = std::make_shared<const Features>(select_features(features, keep, camera_));
+  return tracked;
+}
+
 // The frame's place in the session, and what later frames are compared with.
-void System::remember(const FramePtr& frame, FrameResult& result) {
+void System::remember(const FramePtr& frame, FrameResult& result, MaskOrigin origin) {
   const TrackedFrame& tracked = result.tracked;
   lost_frames_ = has_pose(tracked) ? 0 : lost_frames_ + 1;
   if (!has_pose(tracked)) {
@@ -199,8 +253,13 @@ void System::remember(const FramePtr& frame, FrameResult& result) {
       {frame->stamp,
        tracked.reference,
        session_.map.T_world_keyframe(tracked.reference).inverse() * tracked.T_world_camera});
-  if (!localize_only_) {
-    views_.add(session_, frame, result.dynamics, result.is_keyframe, frame_number_);
+  const std::size_t record = session_.frames.size() - 1;
+  if (!localize_only_ && origin == MaskOrigin::kOwn) {
+    views_.add(session_, {frame, result.dynamics, record, result.is_keyframe}, frame_number_);
+  }
+  if (!localize_only_ && origin == MaskOrigin::kAwaited) {
+    awaiting_.push_back({frame, tracked, record});
+    if (awaiting_.size() > kMostAwaiting) awaiting_.pop_front();
   }
   if (dynamics_.enabled()) {
     dynamics_.remember(*frame, T_odometry_world_ * tracked.T_world_camera, result.dynamics);

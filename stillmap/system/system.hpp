@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <deque>
 #include <memory>
 #include <optional>
 #include <span>
@@ -59,9 +60,21 @@ class System {
   /// frame. Throws Error when the session is of another camera or of another image pyramid.
   void load(Session session);
 
-  /// Tracks a frame; it may become a key frame. Frames have the camera's size. `objects`: what a
-  /// network has found in it, if there is one.
-  FrameResult process(const FramePtr& frame, FrameObjects objects = {});
+  /// Tracks a frame. Frames have the camera's size. `objects`: what a network has found in it, if
+  /// there is one. Only with objects of its own may it become a key frame, begin a map or be seen
+  /// in the cloud.
+  FrameResult process(const FramePtr& frame,
+                      FrameObjects objects = {},
+                      MaskOrigin origin = MaskOrigin::kOwn);
+
+  /// The own objects of a frame that was processed while they were awaited, in the order of those
+  /// frames, and before the next is processed: it may become a key frame now, with the features off
+  /// its own masks, and be seen in the cloud. Nothing happens when it had no pose, or when one
+  /// after it was given before.
+  void take_objects(FrameObjects objects);
+
+  /// Nothing to track in: the next frame needs objects of its own, as it may begin a map.
+  [[nodiscard]] bool needs_own_objects() const;
 
   /// Ends the run: waits for pending work and assembles the cloud. Call once.
   [[nodiscard]] RunResult finish();
@@ -79,10 +92,19 @@ class System {
   [[nodiscard]] double readout_s() const { return tracker_.readout_s(); }
 
  private:
+  /// A tracked frame whose own objects are looked for.
+  struct AwaitingObjects {
+    FramePtr frame;
+    TrackedFrame tracked;
+    std::size_t record;  // in session_.frames
+  };
+
   [[nodiscard]] bool may_begin_world(const Features& features) const;
-  [[nodiscard]] TrackedFrame track(const RgbdFrame& frame, Features features);
+  [[nodiscard]] TrackedFrame track(const RgbdFrame& frame, Features features, MaskOrigin origin);
   [[nodiscard]] KeyframeId insert_keyframe(const RgbdFrame& frame, const TrackedFrame& tracked);
-  void remember(const FramePtr& frame, FrameResult& result);
+  [[nodiscard]] TrackedFrame off_masks(const AwaitingObjects& awaiting,
+                                       const cv::Mat1b& excluded) const;
+  void remember(const FramePtr& frame, FrameResult& result, MaskOrigin origin);
   void count_landmarks(const TrackedFrame& tracked);
   void update_map(std::int64_t frame);
   void apply(const MapUpdate& update);
@@ -99,6 +121,7 @@ class System {
   Tracker tracker_;
 
   std::int64_t frame_number_ = 0;  // of those processed
+  std::deque<AwaitingObjects> awaiting_;
   KeyframeAge since_keyframe_;
   std::vector<ClosedLoop> closed_loops_;
   int lost_frames_ = 0;  // in a row

@@ -11,17 +11,15 @@ ViewStage::ViewStage(const CloudConfig& config,
                      Worker* worker)
     : config_(config), rays_(pixel_rays(camera)), lag_frames_(lag_frames), jobs_(worker) {}
 
-void ViewStage::add(Session& session,
-                    const FramePtr& frame,
-                    const FrameDynamics& dynamics,
-                    bool is_keyframe,
-                    std::int64_t frame_number) {
-  ++since_last_;
-  const int gap = config_.view_gap_frames;
-  if (!is_keyframe && (gap == 0 || since_last_ < gap)) return;
-  since_last_ = 0;
+void ViewStage::add(Session& session, const Candidate& candidate, std::int64_t frame_number) {
+  const auto record = static_cast<std::int64_t>(candidate.record);
+  if (!last_) last_ = record - 1;
+  if (!candidate.is_keyframe && !is_due(record)) return;
+  last_ = record;
   const std::size_t index = session.views.size();
-  session.views.push_back({static_cast<std::uint32_t>(session.frames.size() - 1), nullptr});
+  session.views.push_back({static_cast<std::uint32_t>(candidate.record), nullptr});
+  const FramePtr frame = candidate.frame;
+  const FrameDynamics& dynamics = candidate.dynamics;
   const DynamicMask mask = dynamics.judged.mask;
   const cv::Mat1b excluded = dynamics.excluded;
   const cv::Mat1b labels = label_image(frame->depth, dynamics);
@@ -31,6 +29,10 @@ void ViewStage::add(Session& session,
         index,
         std::make_shared<const StaticView>(static_view(*frame, rays_, config_, masks, labels)));
   });
+}
+
+bool ViewStage::is_due(std::int64_t record) const {
+  return config_.view_gap_frames > 0 && record - *last_ >= config_.view_gap_frames;
 }
 
 void ViewStage::collect_due(Session& session, std::int64_t frame_number) {

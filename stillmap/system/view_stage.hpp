@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "stillmap/session/session.hpp"
@@ -19,23 +20,27 @@ class ViewStage {
   /// `lag_frames` later.
   ViewStage(const CloudConfig& config, const CameraModel& camera, int lag_frames, Worker* worker);
 
-  /// Of the frame whose record is the session's last, if its turn has come. To be called for each
-  /// recorded frame.
-  void add(Session& session,
-           const FramePtr& frame,
-           const FrameDynamics& dynamics,
-           bool is_keyframe,
-           std::int64_t frame_number);
+  /// A recorded frame with masks of its own.
+  struct Candidate {
+    const FramePtr& frame;
+    const FrameDynamics& dynamics;
+    std::size_t record;  ///< its place in the session's frames
+    bool is_keyframe;
+  };
+  /// Makes its view if its turn has come. To be called in the order of the records.
+  void add(Session& session, const Candidate& candidate, std::int64_t frame_number);
 
   void collect_due(Session& session, std::int64_t frame_number);
 
  private:
+  [[nodiscard]] bool is_due(std::int64_t record) const;
+
   using FinishedView = std::pair<std::size_t, std::shared_ptr<const StaticView>>;
 
   CloudConfig config_;
   cv::Mat2f rays_;
   int lag_frames_;
-  int since_last_ = 0;  // frames
+  std::optional<std::int64_t> last_;  // record of the last view's frame, at first that before all
   JobLedger<FinishedView> jobs_;
 };
 
