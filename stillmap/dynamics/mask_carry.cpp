@@ -73,6 +73,7 @@ Refinement refine(PixelPatch& patch, const DepthImage& depth, const DepthInterva
 }  // namespace
 
 CarriedMask carry_mask(const ObjectView& from,
+                       const MaskArea& from_area,
                        const PixelBox& box,
                        const DepthImage& depth,
                        const CarryRule& rule) {
@@ -80,10 +81,10 @@ CarriedMask carry_mask(const ObjectView& from,
   CarriedMask carried{{area, cv::Mat1b(area.size(), std::uint8_t{1})}, MaskSource::kBox};
   if (from.mask.mat.empty() || area.empty()) return carried;
   STILLMAP_CHECK(from.mask.mat.size() == depth.mat.size());
-  const MaskArea source = mask_areas(from.mask)[static_cast<std::size_t>(from.id)];
-  if (source.pixels == 0) return carried;
+  if (from_area.pixels == 0) return carried;
   PixelPatch patch{area, moved_pixels(from, box, area)};
-  const ObjectDepths depths = object_depths(from.depth, from.mask, from.id, source, rule.outliers);
+  const ObjectDepths depths =
+      object_depths(from.depth, from.mask, from.id, from_area, rule.outliers);
   DepthInterval fitting{0.0F, 1e9F};  // nothing known: anything fits
   if (depths.interval) {
     const auto margin = static_cast<float>(rule.depth_margin_m);

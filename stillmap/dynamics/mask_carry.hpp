@@ -21,7 +21,9 @@ struct CarriedMask {
 /// The pixels that an object of a neighbouring frame has in this one, where its box is `box`: its
 /// mask, moved and scaled as the box, less the pixels whose depth here does not fit its depth
 /// there; pixels without depth stay. All of the box where too little remains or there is no mask.
+/// `from_area` is the object's in its mask.
 [[nodiscard]] CarriedMask carry_mask(const ObjectView& from,
+                                     const MaskArea& from_area,
                                      const PixelBox& box,
                                      const DepthImage& depth,
                                      const CarryRule& rule);

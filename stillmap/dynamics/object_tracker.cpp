@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <utility>
 
 #include "stillmap/core/error.hpp"
@@ -131,7 +132,8 @@ std::optional<FrameObjects> ObjectTracker::push(ObservedFrame frame) {
   const std::size_t longest_gap = std::max<std::size_t>(2 * search, 1);
   std::erase_if(tracks_, [&](const Track& t) { return pushed_ - t.seen_at > longest_gap; });
   std::vector<TrackId> tracks = associate(frame);
-  held_.push_back({std::move(frame), pushed_, std::move(tracks)});
+  auto areas = std::make_shared<const MaskAreas>(mask_areas(frame.detections.mask));
+  held_.push_back({std::move(frame), pushed_, std::move(tracks), std::move(areas)});
   ++pushed_;
   const std::size_t delay = rule_ == FillRule::kBothWays ? search : 0;
   if (pushed_ <= delay) return std::nullopt;
@@ -149,7 +151,7 @@ FrameObjects ObjectTracker::carry_to(FrameId frame,
   STILLMAP_CHECK(rule_ == FillRule::kCausal);
   if (held_.empty()) return {frame, stamp, {}, {}};
   STILLMAP_CHECK(held_.back().frame.detections.stamp.seconds < stamp.seconds);
-  return leave({{frame, {stamp, {}, {}}, depth}, pushed_, {}, false});
+  return leave({{frame, {stamp, {}, {}}, depth}, pushed_, {}, nullptr, false});
 }
 
 std::vector<FrameObjects> ObjectTracker::flush() {
@@ -211,9 +213,10 @@ CarriedMask ObjectTracker::carried_mask(const Fill& fill, const Held& held) cons
   const ObservedFrame& source = fill.nearest.held->frame;
   const DetectedObject& object = source.detections.objects[fill.nearest.object];
   const ObjectView view{source.depth, source.detections.mask, object.id, object.box};
+  const MaskArea& area = (*fill.nearest.held->areas)[static_cast<std::size_t>(object.id)];
   CarryRule rule;
   rule.depth_margin_m = config_.carry_depth_margin_m;
-  return carry_mask(view, fill.box, held.frame.depth, rule);
+  return carry_mask(view, area, fill.box, held.frame.depth, rule);
 }
 
 // Once may have been an error of the network; but nothing else tells of a frame that it has not

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -87,7 +88,8 @@ class ObjectTracker {
     ObservedFrame frame;
     std::size_t position = 0;     // in the stream
     std::vector<TrackId> tracks;  // of frame.detections.objects
-    bool looked_at = true;        // by a network
+    std::shared_ptr<const MaskAreas> areas;
+    bool looked_at = true;  // by a network
   };
   struct Sighting {
     const Held* held = nullptr;

@@ -195,6 +195,42 @@ TEST(ObjectTracker, CausalRuleGoesOnAtTheVelocityForThreeFrames) {
   EXPECT_TRUE(out[8].objects.empty());
 }
 
+// Every third frame is looked at; the others are where the velocity puts the box.
+TEST(ObjectTracker, CarriesToFramesThatNobodyLookedAt) {
+  ObjectTracker tracker({}, FillRule::kCausal);
+  const std::vector<ObservedFrame> frames = walker(12, {});
+  EXPECT_TRUE(
+      tracker.carry_to(FrameId(0), frames[0].detections.stamp, frames[0].depth).objects.empty());
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (i % 3 == 0) {
+      (void)tracker.push(frames[i]);
+      continue;
+    }
+    const FrameObjects carried =
+        tracker.carry_to(frames[i].id, frames[i].detections.stamp, frames[i].depth);
+    ASSERT_EQ(carried.objects.size(), 1U) << i;  // also when it was seen but once
+    const TrackedObject& object = carried.objects[0];
+    const auto looked_at = static_cast<std::uint32_t>(i - i % 3);
+    EXPECT_EQ(object.filled, (BoxOrigin{FrameId(looked_at), std::nullopt}));
+    if (i < 3) continue;  // at one sighting there is no velocity yet
+    EXPECT_NEAR(object.detection.box.x0, 3.0 * static_cast<double>(i), 1e-6);
+    cv::Mat1b truth(kHeight, kWidth, std::uint8_t{0});
+    truth(pixels_of(box_at(3.0 * static_cast<double>(i)), truth.size())).setTo(1);
+    EXPECT_EQ(cv::countNonZero(truth != (carried.mask.mat > 0) / 255), 0) << i;
+  }
+}
+
+// What the last look has missed is carried on from the look before, when it was seen twice.
+TEST(ObjectTracker, CarriesWhatTheLastLookMissed) {
+  ObjectTracker tracker({}, FillRule::kCausal);
+  const std::vector<ObservedFrame> frames = walker(8, {6});
+  for (const std::size_t i : {0U, 3U, 6U}) (void)tracker.push(frames[i]);
+  const FrameObjects carried =
+      tracker.carry_to(frames[7].id, frames[7].detections.stamp, frames[7].depth);
+  ASSERT_EQ(carried.objects.size(), 1U);
+  EXPECT_EQ(carried.objects[0].filled, (BoxOrigin{FrameId(3), std::nullopt}));
+}
+
 TEST(ObjectTracker, WhatWasSeenOnceIsFilledInOnlyWhenTold) {
   const std::vector<ObservedFrame> frames = walker(6, {0, 1, 3, 4, 5});
   const std::vector<FrameObjects> without =
@@ -225,7 +261,7 @@ TEST(CarryMask, KeepsWhatFitsInDepthAndMovesAndScales) {
   now.mat(cv::Rect(30, 20, 10, 20)).setTo(3.0F);
   now.mat(20, 45) = 0.0F;  // missing: nothing says that it does not fit
   const ObjectView from{before, mask, 3, {10, 10, 20, 20}};
-  const CarriedMask carried = carry_mask(from, {30, 20, 50, 40}, now, {});
+  const CarriedMask carried = carry_mask(from, mask_areas(mask)[3], {30, 20, 50, 40}, now, {});
   EXPECT_EQ(carried.source, MaskSource::kCarried);
   EXPECT_EQ(carried.patch.area, cv::Rect(30, 20, 20, 20));
   EXPECT_EQ(cv::countNonZero(carried.patch.pixels), 200);
@@ -237,12 +273,12 @@ TEST(CarryMask, IsTheBoxWhereTooLittleFitsOrNothingWasThere) {
   const ObjectMask mask(cv::Mat1b(kHeight, kWidth, std::uint8_t{0}));
   mask.mat(cv::Rect(10, 10, 10, 10)).setTo(3);
   const PixelBox box{12, 10, 22, 20};
-  const CarriedMask gone =
-      carry_mask({before, mask, 3, {10, 10, 20, 20}}, box, flat_depth(3.0F), {});
+  const CarriedMask gone = carry_mask(
+      {before, mask, 3, {10, 10, 20, 20}}, mask_areas(mask)[3], box, flat_depth(3.0F), {});
   EXPECT_EQ(gone.source, MaskSource::kBox);
   EXPECT_EQ(cv::countNonZero(gone.patch.pixels), 100);
-  const CarriedMask no_pixels =
-      carry_mask({before, mask, 4, {10, 10, 20, 20}}, box, flat_depth(1.0F), {});
+  const CarriedMask no_pixels = carry_mask(
+      {before, mask, 4, {10, 10, 20, 20}}, mask_areas(mask)[4], box, flat_depth(1.0F), {});
   EXPECT_EQ(no_pixels.source, MaskSource::kBox);
 }
 

@@ -60,7 +60,8 @@ class NetworkFeed : public ObjectFeed {
   int gap_frames_;
   std::optional<FrameId> last_;
   std::optional<Look> look_;
-  Worker worker_;  // last: it uses all else
+  // Tracking goes first. Last: it uses all else.
+  Worker worker_{Worker::Priority::kLow};
 };
 
 /// The same frames' objects at the same steps as in a run that was recorded.

@@ -4,6 +4,9 @@
 #include <functional>
 #include <thread>
 
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include "stillmap/core/channel.hpp"
 
 namespace stillmap {
@@ -13,7 +16,15 @@ namespace stillmap {
 /// future).
 class Worker {
  public:
-  Worker() : thread_([this] { run(); }) {}
+  enum class Priority {
+    kNormal,
+    kLow,  ///< others of this process that want a processor get it first
+  };
+  explicit Worker(Priority priority = Priority::kNormal)
+      : thread_([this, priority] {
+          if (priority == Priority::kLow) give_way();
+          run();
+        }) {}
   ~Worker() {
     tasks_.cancel();
     tasks_.close();
@@ -25,6 +36,12 @@ class Worker {
   void post(std::function<void()> task) { (void)tasks_.push(std::move(task)); }
 
  private:
+  // Only how fast things go depends on it; where it is refused they go as they would.
+  static void give_way() {
+    constexpr int kNiceness = 10;
+    (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNiceness);
+  }
+
   void run() {
     while (std::optional<std::function<void()>> task = tasks_.pop()) (*task)();
   }
