@@ -122,7 +122,40 @@ TEST_F(Objects, AreNotKnownBeforehandLive) {
     return filled;
   };
   EXPECT_EQ(filled_before(""), 2U);
-  EXPECT_EQ(filled_before("--live"), 0U);
+  // A look at every frame that has come in before the frame itself is processed.
+  std::string record;
+  for (int i = 0; i < kFrames; ++i) {
+    record += fmt::format(R"({{"frame":{0},"objects_of":[{0}]}})", i) + "\n";
+  }
+  write("live.jsonl", record);
+  EXPECT_EQ(filled_before("--live --replay live.jsonl"), 0U);
+}
+
+TEST_F(Objects, OfALiveRunAreThoseOfTheRunMadeAgain) {
+  const std::string command = "run wall --segmenter detections:found --live ";
+  ASSERT_EQ(run(command + "--speed 5 --out a").exit_code, 0);
+  ASSERT_EQ(run(command + "--replay a/live.jsonl --threads 1 --out b").exit_code, 0);
+  for (const char* file :
+       {"trajectory.txt", "objects.jsonl", "map.ply", "map.stillmap", "live.jsonl"}) {
+    EXPECT_FALSE(content(std::string("a/") + file).empty()) << file;
+    EXPECT_TRUE(content(std::string("a/") + file) == content(std::string("b/") + file)) << file;
+  }
+  const json live = json::parse(content("a/report.json")).at("live");
+  EXPECT_EQ(live.at("speed"), 5.0);
+  EXPECT_EQ(live.at("dropped").get<std::size_t>() + lines_of("a/live.jsonl").size(),
+            static_cast<std::size_t>(kFrames));
+  EXPECT_GT(live.at("latency_ms").at("p95"), 0.0);
+  // A run that is not live has no record, not even that of an earlier one.
+  ASSERT_EQ(run("run wall --out a").exit_code, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "a/live.jsonl"));
+  EXPECT_TRUE(json::parse(content("a/report.json")).at("live").is_null());
+
+  expect_refused("run wall --out c --replay a/live.jsonl", "--live");
+  expect_refused("run wall --out c --speed 2", "--live");
+  expect_refused("run wall --out c --live --speed 0", "--speed");
+  expect_refused("run wall --out c --live --replay nowhere", "nowhere");
+  write("bad.jsonl", "{\"frame\":99,\"objects_of\":[]}\n");
+  expect_refused("run wall --out c --live --replay bad.jsonl", "bad.jsonl:1:");
 }
 
 TEST_F(Objects, OfAnEarlierRunDoNotStay) {

@@ -9,6 +9,7 @@
 
 #include "apps/commands.hpp"
 #include "apps/progress_bar.hpp"
+#include "apps/steady_clock.hpp"
 #include "stillmap/config/config_io.hpp"
 #include "stillmap/core/error.hpp"
 #include "stillmap/core/nearest_name.hpp"
@@ -220,6 +221,8 @@ int run(const RunArguments& arguments) {
   options.frames.stride = arguments.stride;
   options.threads = arguments.threads;
   options.live = live_options(arguments, sequence);
+  SteadyClock clock;
+  if (options.live) options.live->clock = &clock;
   if (truth || arguments.poses == "truth") options.groundtruth = groundtruth;
   ProgressBar progress("frames");
   options.on_progress = [&](std::size_t done, std::size_t total) { progress.show(done, total); };

@@ -95,7 +95,7 @@ void run_by_clock(
   LiveCamera camera(
       FrameSource(input.sequence, input.frames), input.sequence, input.options.live->speed, clock);
   while (std::optional<CapturedFrame> captured = camera.next()) {
-    log.pass(camera.dropped() - report.dropped);
+    if (camera.dropped() > report.dropped) log.pass(camera.dropped() - report.dropped);
     report.dropped = camera.dropped();
     if (captured->source.frame == nullptr) {
       log.skip(captured->source);
@@ -129,9 +129,9 @@ LiveResult run_live(const LiveInput& input, System& system, RunLog& log) {
     run_recorded(input, loop, log);
     report.dropped = input.frames.size() - std::min(input.frames.size(), options.record->size());
   } else {
+    STILLMAP_CHECK(options.clock != nullptr);
     report.speed = options.speed;
-    SteadyClock clock;
-    run_by_clock(input, options.clock != nullptr ? *options.clock : clock, loop, log, report);
+    run_by_clock(input, *options.clock, loop, log, report);
   }
   LiveResult result = loop.take_result();
   report.looked_at = result.report.looked_at;

@@ -29,7 +29,7 @@ struct FrameSelection {
 struct LiveOptions {
   double speed = 1;                  ///< of the clock that frames come by
   std::optional<LiveRecord> record;  ///< instead of by the clock: what was decided then
-  Clock* clock = nullptr;            ///< not owned; the machine's where null
+  Clock* clock = nullptr;            ///< not owned; needed without a record
 };
 
 struct RunOptions {

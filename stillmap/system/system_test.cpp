@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stillmap/system/system.hpp"
 
+#include <set>
+
 #include <gtest/gtest.h>
 
 #include "stillmap/eval/ate.hpp"
@@ -183,6 +185,7 @@ TEST(System, CanBeGivenUpWithJobsPending) {
 // Two seconds and a half in which people cross close before the camera, with a chair and a carton.
 struct CrowdedFrames {
   std::vector<FramePtr> frames;
+  std::vector<FrameDetections> detections;
   std::vector<FrameObjects> objects;
   Trajectory ground_truth;
 };
@@ -203,8 +206,9 @@ const CrowdedFrames& crowded_frames() {
         const char* name = seen.id < 10 ? "person" : seen.id < 13 ? "chair" : "box";
         truth.objects.push_back({seen.id, name, seen.box, seen.pixels, 1.0});
       }
+      crowded.detections.push_back(perfect_detections(truth));
       crowded.objects.push_back(
-          *tracker.push({id, perfect_detections(truth), rendered.frame->depth}));
+          *tracker.push({id, crowded.detections.back(), rendered.frame->depth}));
       crowded.frames.push_back(rendered.frame);
       crowded.ground_truth.push_back({office.stamp(id), office.pose(id)});
     }
@@ -223,6 +227,83 @@ double error_among_people(const std::string& mode) {
   }
   return absolute_trajectory_error(crowded.ground_truth, system.finish().trajectory)
       ->translation_m.rmse;
+}
+
+// The crowd with a network that looks at every fourth frame and is done four frames later.
+struct LiveCrowd {
+  RunResult result;
+  double ate_m = 0;
+  std::set<std::string> looked_at;  // stamps
+};
+
+LiveCrowd live_crowd(bool keyframes_have_own_masks) {
+  constexpr std::size_t kGap = 4;
+  const CrowdedFrames& crowded = crowded_frames();
+  SystemConfig config;
+  config.dynamics.mode = "mask";  // nothing but the masks keeps people out
+  System system(config, synthetic_camera(320, 240), {.threads = 2});
+  ObjectTracker tracker({}, FillRule::kCausal);
+  LiveCrowd live;
+  for (std::size_t i = 0; i < crowded.frames.size(); ++i) {
+    const FramePtr& frame = crowded.frames[i];
+    std::optional<FrameObjects> earlier;
+    if (i == 0) {
+      EXPECT_TRUE(system.needs_own_objects());
+      earlier = tracker.push({frame->id, crowded.detections[0], frame->depth});
+      (void)system.process(frame, *earlier);
+      live.looked_at.insert(frame->stamp.text);
+      continue;
+    }
+    EXPECT_FALSE(system.needs_own_objects());
+    if (i % kGap == 0 && i > kGap) {
+      const FramePtr& then = crowded.frames[i - kGap];
+      earlier = tracker.push({then->id, crowded.detections[i - kGap], then->depth});
+      live.looked_at.insert(then->stamp.text);
+    }
+    MaskOrigin origin = i % kGap == 0 ? MaskOrigin::kAwaited : MaskOrigin::kCarried;
+    if (!keyframes_have_own_masks) origin = MaskOrigin::kOwn;
+    (void)system.process(frame, tracker.carry_to(frame->id, frame->stamp, frame->depth), origin);
+    if (earlier) system.take_objects(*earlier);
+  }
+  live.result = system.finish();
+  live.ate_m =
+      absolute_trajectory_error(crowded.ground_truth, live.result.trajectory)->translation_m.rmse;
+  return live;
+}
+
+// Points of the map that are farther from the true camera path's static surface than noise: nearer
+// than what the first and last frames, once people have gone, see through them.
+std::size_t seen_through(const PointCloud& map, const Trajectory& ground_truth) {
+  const CrowdedFrames& crowded = crowded_frames();
+  const CameraModel camera = synthetic_camera(320, 240);
+  const Eigen::Isometry3d T_truth_map = ground_truth.front().T_world_camera;
+  std::size_t count = 0;
+  for (const Eigen::Vector3f& p_map : map.positions) {
+    int through = 0;
+    for (std::size_t k = 0; k < crowded.frames.size(); k += 3) {
+      const Eigen::Vector3d p =
+          ground_truth[k].T_world_camera.inverse() * T_truth_map * p_map.cast<double>();
+      if (p.z() < 0.3) continue;
+      const Eigen::Vector2i px = camera.project(p).array().round().cast<int>();
+      if (px.x() < 0 || px.y() < 0 || px.x() >= 320 || px.y() >= 240) continue;
+      through += crowded.frames[k]->depth.mat(px.y(), px.x()) > p.z() + 0.3 ? 1 : 0;
+    }
+    count += through >= 3 ? 1 : 0;
+  }
+  return count;
+}
+
+TEST(System, KeyframesOfALiveRunWaitForMasksOfTheirOwn) {
+  const LiveCrowd own = live_crowd(true);
+  EXPECT_LT(own.ate_m, 0.025);
+  EXPECT_EQ(own.result.trajectory.size(), crowded_frames().frames.size());
+  EXPECT_GT(own.result.keyframes.size(), 2U);
+  for (const StampedPose& keyframe : own.result.keyframes) {
+    EXPECT_TRUE(own.looked_at.contains(keyframe.stamp.text));
+  }
+  const LiveCrowd carried = live_crowd(false);
+  const Trajectory& truth = crowded_frames().ground_truth;
+  EXPECT_GT(seen_through(carried.result.map, truth), 2 * seen_through(own.result.map, truth));
 }
 
 TEST(System, PeopleDisturbThePoseOnlyWithoutDynamics) {

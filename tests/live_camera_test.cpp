@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/run/live_camera.hpp"
+
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/live_test_support.hpp"
+
+namespace stillmap {
+namespace {
+
+struct Given {
+  std::vector<std::uint32_t> frames;
+  std::vector<double> at_s;  // since the first
+  std::size_t dropped = 0;
+};
+
+// What a camera gives to somebody who takes so long for each frame.
+Given take_all(double speed, const std::vector<double>& work_s) {
+  TestClock clock;
+  LiveCamera camera(FrameSource(wall_sequence(), wall_frames()), wall_sequence(), speed, clock);
+  Given given;
+  const double begin_s = clock.now_s();
+  while (const std::optional<CapturedFrame> captured = camera.next()) {
+    EXPECT_NE(captured->source.frame, nullptr);
+    EXPECT_LE(captured->arrival_s, clock.now_s());
+    given.at_s.push_back(clock.now_s() - begin_s);
+    clock.pass_s(work_s[given.frames.size() % work_s.size()]);
+    given.frames.push_back(captured->source.id.value);
+  }
+  given.dropped = camera.dropped();
+  return given;
+}
+
+TEST(LiveCamera, GivesEveryFrameAtItsTimeToWhoeverIsFast) {
+  for (const double speed : {1.0, 4.0}) {
+    const Given given = take_all(speed, {0.001 / speed});
+    ASSERT_EQ(given.frames.size(), kWallFrames);
+    EXPECT_EQ(given.dropped, 0U);
+    for (std::size_t i = 0; i < kWallFrames; ++i) {
+      EXPECT_EQ(given.frames[i], i);
+      EXPECT_NEAR(given.at_s[i], static_cast<double>(i) / 30.0 / speed, 2e-6);
+    }
+  }
+}
+
+// Worked out by hand from "the newest waits, those before it are dropped".
+TEST(LiveCamera, DropsWhatCameWhileSomebodyWasBusy) {
+  const std::vector<double> work_s = {0.050, 0.005, 0.210, 0.030, 0.034};
+  const Given given = take_all(1.0, work_s);
+  std::vector<std::uint32_t> expected;
+  double now_s = 0;
+  for (std::size_t next = 0; next < kWallFrames;) {
+    const auto arrival_s = [](std::size_t i) { return static_cast<double>(i) / 30.0; };
+    now_s = std::max(now_s, arrival_s(next));
+    while (next + 1 < kWallFrames && arrival_s(next + 1) <= now_s) ++next;
+    now_s += work_s[expected.size() % work_s.size()];
+    expected.push_back(static_cast<std::uint32_t>(next++));
+  }
+  EXPECT_EQ(given.frames, expected);
+  EXPECT_EQ(given.dropped, kWallFrames - expected.size());
+  EXPECT_GT(given.dropped, 5U);
+}
+
+TEST(LiveCamera, OneLateFrameCostsNothingIfTheNextIsFast) {
+  std::vector<double> work_s(kWallFrames, 0.010);
+  work_s[7] = 0.060;
+  EXPECT_EQ(take_all(1.0, work_s).dropped, 0U);
+  work_s[7] = 0.070;
+  EXPECT_EQ(take_all(1.0, work_s).dropped, 1U);
+}
+
+TEST(LiveCamera, CanBeGivenUp) {
+  TestClock clock;
+  LiveCamera camera(FrameSource(wall_sequence(), wall_frames()), wall_sequence(), 1, clock);
+  EXPECT_TRUE(camera.next());
+}
+
+}  // namespace
+}  // namespace stillmap
