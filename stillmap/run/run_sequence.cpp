@@ -154,8 +154,9 @@ SequenceRun run_sequence(const TumSequence& sequence,
 
   std::vector<LoggedFrame> log;
   std::size_t done = 0;
-  const auto process = [&](FrameWithObjects ready) {
-    const FrameResult result = system.process(ready.frame, std::move(ready.objects));
+  const auto process = [&](ReadyFrame ready) {
+    const FrameResult result =
+        system.process(ready.frame, std::move(ready.objects), std::move(ready.prepared));
     add_frame(report, *ready.frame, result);
     if (with_objects) log.push_back(log_frame(ready.frame->stamp, result));
     if (done * kSamples / frames.size() != (done + 1) * kSamples / frames.size()) {
@@ -169,6 +170,7 @@ SequenceRun run_sequence(const TumSequence& sequence,
       ObjectSource(options.segmenter,
                    config.dynamics.object_tracking(),
                    options.live ? FillRule::kCausal : FillRule::kBothWays),
+      system,
       options.threads > 1);
   while (std::optional<PreparedFrames> next = frames_ahead.next()) {
     if (!next->at_end) add_stage_time(report.stages, "reading", next->source.reading_ms);
@@ -179,7 +181,7 @@ SequenceRun run_sequence(const TumSequence& sequence,
     if (next->segmentation_ms) {
       add_stage_time(report.stages, "segmentation", *next->segmentation_ms);
     }
-    for (FrameWithObjects& frame : next->ready) process(std::move(frame));
+    for (ReadyFrame& frame : next->ready) process(std::move(frame));
   }
   Stopwatch finishing;
   run.result = system.finish();

@@ -55,7 +55,22 @@ void System::load(Session session) {
   if (!worlds.empty()) next_world_ = WorldId(worlds.back().value + 1);
 }
 
+PreparedFrame System::prepare(const RgbdFrame& frame, const FrameObjects& objects) const {
+  Stopwatch stage;
+  PreparedFrame prepared;
+  prepared.corners = extractor_.corners(frame.gray);
+  prepared.corners_ms = stage.lap_ms();
+  if (dynamics_.enabled()) prepared.objects = dynamics_.measure(frame, objects);
+  prepared.objects_ms = stage.lap_ms();
+  return prepared;
+}
+
 FrameResult System::process(const FramePtr& frame, FrameObjects objects) {
+  PreparedFrame prepared = prepare(*frame, objects);
+  return process(frame, std::move(objects), std::move(prepared));
+}
+
+FrameResult System::process(const FramePtr& frame, FrameObjects objects, PreparedFrame prepared) {
   Stopwatch total, stage;
   FrameResult result;
   update_map(frame_number_);
@@ -65,11 +80,12 @@ FrameResult System::process(const FramePtr& frame, FrameObjects objects) {
       tracker_.expected_pose(frame->stamp.seconds, session_.map);
   if (expected) expected = T_odometry_world_ * *expected;
   if (dynamics_.enabled()) {
-    result.dynamics = dynamics_.judge(*frame, std::move(objects), expected);
-    result.stages.push_back({"dynamics", stage.lap_ms()});
+    result.dynamics = dynamics_.judge(*frame, std::move(objects), prepared.objects, expected);
+    result.stages.push_back({"dynamics", prepared.objects_ms + stage.lap_ms()});
   }
-  Features features = extractor_.extract(frame->gray, frame->depth, result.dynamics.excluded);
-  result.stages.push_back({"features", stage.lap_ms()});
+  Features features =
+      extractor_.extract(std::move(prepared.corners), frame->depth, result.dynamics.excluded);
+  result.stages.push_back({"features", prepared.corners_ms + stage.lap_ms()});
   if (dynamics_.enabled()) {
     SiftedFeatures sifted = dynamics_.sift(*frame, std::move(features), result.dynamics, expected);
     features = std::move(sifted.features);
@@ -80,7 +96,7 @@ FrameResult System::process(const FramePtr& frame, FrameObjects objects) {
 
   result.tracked = track(*frame, std::move(features));
   result.stages.push_back({"tracking", stage.lap_ms()});
-  result.pose_ms = total.lap_ms();
+  result.pose_ms = prepared.corners_ms + prepared.objects_ms + total.lap_ms();
 
   TrackedFrame& tracked = result.tracked;
   since_keyframe_.most_inliers = std::max(since_keyframe_.most_inliers, tracked.inliers);

@@ -13,6 +13,7 @@
 #include "stillmap/system/frame_result.hpp"
 #include "stillmap/system/job_ledger.hpp"
 #include "stillmap/system/loop_stage.hpp"
+#include "stillmap/system/prepared_frame.hpp"
 #include "stillmap/system/view_stage.hpp"
 #include "stillmap/system/worker.hpp"
 
@@ -59,8 +60,15 @@ class System {
   /// frame. Throws Error when the session is of another camera or of another image pyramid.
   void load(Session session);
 
-  /// Tracks a frame; it may become a key frame. Frames have the camera's size. `objects`: what a
-  /// network has found in it, if there is one.
+  /// The part of process() that needs nothing of other frames. May be called on any thread while
+  /// others are being processed. `objects`: what a network has found in it, if there is one.
+  [[nodiscard]] PreparedFrame prepare(const RgbdFrame& frame, const FrameObjects& objects) const;
+
+  /// Tracks a frame; it may become a key frame. Frames have the camera's size. `prepared`: what
+  /// prepare() says of the same.
+  FrameResult process(const FramePtr& frame, FrameObjects objects, PreparedFrame prepared);
+
+  /// Both at once.
   FrameResult process(const FramePtr& frame, FrameObjects objects = {});
 
   /// Ends the run: waits for pending work and assembles the cloud. Call once.
