@@ -124,10 +124,19 @@ cv::Mat1b corner_scores(const cv::Mat1b& image) {
   constexpr int kRim = kCornerCircleRadiusPx;
   cv::Mat1b scores(image.size(), std::uint8_t{0});
   if (image.cols <= 2 * kRim) return scores;
+  const int width = image.cols - 2 * kRim;
+  // What is left over of whole vectors would take as long as all of them: the last vector is one
+  // that overlaps the one before.
+  constexpr int kVector = 32;
+  const int whole = width < kVector ? width : width - width % kVector;
   for (int y = kRim; y < image.rows - kRim; ++y) {
-    std::array<const Byte*, 7> rows;
-    for (int k = 0; k < 7; ++k) rows[static_cast<std::size_t>(k)] = image[y - kRim + k] + kRim;
-    score_row(rows, image.cols - 2 * kRim, scores[y] + kRim);
+    const auto score_from = [&](int x, int size) {
+      std::array<const Byte*, 7> rows;
+      for (int k = 0; k < 7; ++k) rows[static_cast<std::size_t>(k)] = image[y - kRim + k] + x;
+      score_row(rows, size, scores[y] + x);
+    };
+    score_from(kRim, whole);
+    if (whole < width) score_from(kRim + width - kVector, kVector);
   }
   return scores;
 }
