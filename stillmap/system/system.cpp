@@ -24,6 +24,7 @@ System::System(const SystemConfig& config, const CameraModel& camera, const Syst
     : config_(checked(config)),
       cloud_config_(config.cloud.decided(config.dynamics.mode)),
       camera_(camera),
+      threads_(static_cast<std::size_t>(std::max(options.threads, 1))),
       localize_only_(options.localize_only),
       dynamics_(config.dynamics, camera, config.seed),
       extractor_(config.tracking.orb, camera),
@@ -242,7 +243,7 @@ RunResult System::finish() {
     if (world_of(session_, record) != world) continue;
     posed.push_back({T_world_frame(session_, record), view.view.get()});
   }
-  result.map = static_map(posed, camera_, cloud_config_);
+  result.map = static_map(posed, camera_, cloud_config_, threads_);
   return result;
 }
 
@@ -261,7 +262,7 @@ PointCloud System::cloud_with_poses(
   for (const ViewRecord& view : session_.views) {
     if (poses[view.frame]) posed.push_back({*poses[view.frame], view.view.get()});
   }
-  return static_map(posed, camera_, cloud_config_);
+  return static_map(posed, camera_, cloud_config_, threads_);
 }
 
 }  // namespace stillmap

@@ -37,7 +37,7 @@ struct RunResult {
 };
 
 struct SystemOptions {
-  int threads = 1;             ///< 2 or more: mapping, clouds and loops beside the caller
+  int threads = 1;  ///< 2 or more: mapping, clouds and loops beside the caller; the end on so many
   bool localize_only = false;  ///< the map stays as it is
 };
 
@@ -98,6 +98,7 @@ class System {
   SystemConfig config_;
   CloudConfig cloud_config_;  // decided
   CameraModel camera_;
+  std::size_t threads_;
   bool localize_only_;
   DynamicsStage dynamics_;
   OrbExtractor extractor_;
