@@ -33,7 +33,7 @@ System::System(const SystemConfig& config, const CameraModel& camera, const Syst
       tracker_(config.tracking.tracker, config.relocalization, camera, measure_, config.seed),
       worker_(options.threads > 1 ? std::make_unique<Worker>() : nullptr),
       mapping_jobs_(worker_.get()),
-      views_(cloud_config_, camera, config.mapping.lag_frames, worker_.get()),
+      views_(cloud_config_, camera, options.threads > 1),
       loops_(config.loop,
              camera,
              between_views(config, extractor_.level_scales()),
