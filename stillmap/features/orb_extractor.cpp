@@ -10,6 +10,7 @@
 #include "stillmap/core/error.hpp"
 #include "stillmap/features/brief.hpp"
 #include "stillmap/features/fast_corners.hpp"
+#include "stillmap/features/patch_blur.hpp"
 #include "stillmap/features/spread.hpp"
 
 namespace stillmap {
@@ -69,7 +70,7 @@ ImageCorners OrbExtractor::corners(const GrayImage& gray) const {
     } else {
       cv::resize(found.levels[i - 1].image, level.image, levels_[i].size, 0, 0, cv::INTER_LINEAR);
     }
-    cv::GaussianBlur(level.image, level.blurred, cv::Size(7, 7), 2, 2, cv::BORDER_REFLECT_101);
+    level.blurred = blurred_for_descriptors(level.image);
     level.corners = detect(level.image);
     found.levels.push_back(std::move(level));
   }
