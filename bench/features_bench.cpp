@@ -2,9 +2,11 @@
 #include <benchmark/benchmark.h>
 
 #include "stillmap/features/brief.hpp"
+#include "stillmap/features/fast_corners.hpp"
 #include "stillmap/features/features_test_support.hpp"
 #include "stillmap/features/matcher.hpp"
 #include "stillmap/features/orb_extractor.hpp"
+#include "stillmap/features/patch_blur.hpp"
 
 namespace stillmap {
 namespace {
@@ -24,6 +26,26 @@ void extract(benchmark::State& state) {
     found = features.size();
   }
   state.counters["features"] = static_cast<double>(found);
+}
+
+// The part of it that needs nothing but the image.
+void corners(benchmark::State& state) {
+  const Scene scene;
+  for (auto iteration : state) {
+    benchmark::DoNotOptimize(scene.extractor.corners(scene.image));
+  }
+}
+
+void scores_of_corners(benchmark::State& state) {
+  const Scene scene;
+  for (auto iteration : state) benchmark::DoNotOptimize(corner_scores(scene.image.mat));
+}
+
+void blur(benchmark::State& state) {
+  const Scene scene;
+  for (auto iteration : state) {
+    benchmark::DoNotOptimize(blurred_for_descriptors(scene.image.mat));
+  }
 }
 
 void orientation_and_descriptor(benchmark::State& state) {
@@ -74,6 +96,9 @@ void match_all_1000_by_1000(benchmark::State& state) {
 }
 
 BENCHMARK(extract)->Unit(benchmark::kMillisecond);
+BENCHMARK(corners)->Unit(benchmark::kMillisecond);
+BENCHMARK(scores_of_corners)->Unit(benchmark::kMillisecond);
+BENCHMARK(blur)->Unit(benchmark::kMillisecond);
 BENCHMARK(orientation_and_descriptor)->Unit(benchmark::kMillisecond);
 BENCHMARK(match_1500_projections)->Unit(benchmark::kMillisecond);
 BENCHMARK(match_all_1000_by_1000)->Unit(benchmark::kMillisecond);

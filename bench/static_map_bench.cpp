@@ -46,12 +46,18 @@ void assemble_static_map(benchmark::State& state) {
     posed.push_back({office().T_world_camera(i), &views[RenderedOffice::at_step(i)]});
   }
   std::size_t points = 0;
-  for (auto iteration : state) points = static_map(posed, office().camera(), config).size();
+  const auto threads = static_cast<std::size_t>(state.range(1));
+  for (auto iteration : state)
+    points = static_map(posed, office().camera(), config, threads).size();
   state.counters["points"] = static_cast<double>(points);
 }
 
 BENCHMARK(keep_view)->Unit(benchmark::kMillisecond);
-BENCHMARK(assemble_static_map)->Arg(20)->Arg(100)->Unit(benchmark::kMillisecond);
+BENCHMARK(assemble_static_map)
+    ->ArgNames({"views", "threads"})
+    ->ArgsProduct({{20, 100}, {1, 2}})
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace stillmap

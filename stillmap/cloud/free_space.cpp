@@ -9,6 +9,7 @@
 
 #include "stillmap/cloud/point_groups.hpp"
 #include "stillmap/core/error.hpp"
+#include "stillmap/core/ordered_parallel.hpp"
 
 namespace stillmap {
 namespace {
@@ -198,34 +199,43 @@ class RangeCheck {
   float scale_, width_, height_, margin_, growth_, beside_px_, beside_m_;
 };
 
-/// Calls `check(range check, where the points fall, their sightings)` for each view and batch.
-template <class Check>
-void for_each_batch(std::span<const Eigen::Vector3f> points,
-                    std::span<Sightings> all,
-                    std::span<const PosedRange> ranges,
-                    const CameraModel& camera,
-                    const FreeSpaceConfig& config,
-                    Check&& check) {
-  struct View {
-    Projector projector;
-    RangeCheck range;
-  };
+struct View {
+  Projector projector;
+  RangeCheck range;
+};
+
+std::vector<View> views_of(std::span<const PosedRange> ranges,
+                           const CameraModel& camera,
+                           const FreeSpaceConfig& config) {
   std::vector<View> views;
   for (const PosedRange& posed : ranges) {
     STILLMAP_CHECK(posed.range != nullptr);
     views.push_back({Projector(camera, posed.T_world_camera.inverse()),
                      RangeCheck(*posed.range, camera, config)});
   }
-  Projected projected{};
-  for (std::size_t begin = 0; begin < points.size(); begin += kBatch) {
-    const std::size_t size = std::min(kBatch, points.size() - begin);
-    const Batch batch = make_batch(points.subspan(begin, size));
-    for (const View& view : views) {
-      if (view.projector.misses(batch)) continue;
-      view.projector.project(batch, projected);
-      check(view.range, projected, all.subspan(begin, size));
+  return views;
+}
+
+/// Calls `check(range check, where the points fall, their sightings)` for each view and batch;
+/// batches are dealt out to threads in turn.
+template <class Check>
+void for_each_batch(std::span<const Eigen::Vector3f> points,
+                    std::span<Sightings> all,
+                    const std::vector<View>& views,
+                    std::size_t threads,
+                    const Check& check) {
+  in_parallel(threads, [&](std::size_t thread) {
+    Projected projected{};
+    for (std::size_t begin = thread * kBatch; begin < points.size(); begin += threads * kBatch) {
+      const std::size_t size = std::min(kBatch, points.size() - begin);
+      const Batch batch = make_batch(points.subspan(begin, size));
+      for (const View& view : views) {
+        if (view.projector.misses(batch)) continue;
+        view.projector.project(batch, projected);
+        check(view.range, projected, all.subspan(begin, size));
+      }
     }
-  }
+  });
 }
 
 }  // namespace
@@ -233,13 +243,15 @@ void for_each_batch(std::span<const Eigen::Vector3f> points,
 std::vector<Sightings> sightings(std::span<const Eigen::Vector3f> points,
                                  std::span<const PosedRange> ranges,
                                  const CameraModel& camera,
-                                 const FreeSpaceConfig& config) {
+                                 const FreeSpaceConfig& config,
+                                 std::size_t threads) {
+  STILLMAP_CHECK(threads > 0);
+  const std::vector<View> views = views_of(ranges, camera, config);
   std::vector<Sightings> all(points.size());
   for_each_batch(points,
                  all,
-                 ranges,
-                 camera,
-                 config,
+                 views,
+                 threads,
                  [](const RangeCheck& range, const Projected& at, std::span<Sightings> some) {
                    range.update(at, some);
                  });
@@ -255,9 +267,8 @@ std::vector<Sightings> sightings(std::span<const Eigen::Vector3f> points,
   }
   for_each_batch(weak_points,
                  weak_sightings,
-                 ranges,
-                 camera,
-                 config,
+                 views,
+                 threads,
                  [](const RangeCheck& range, const Projected& at, std::span<Sightings> some) {
                    range.look_beside(at, some);
                  });
@@ -277,9 +288,10 @@ bool stays(const Sightings& s, const FreeSpaceConfig& config) {
 PointCloud without_moved(const PointCloud& map,
                          std::span<const PosedRange> ranges,
                          const CameraModel& camera,
-                         const FreeSpaceConfig& config) {
+                         const FreeSpaceConfig& config,
+                         std::size_t threads) {
   const PointGroups groups = group_points(map.positions, config.cell_m);
-  const std::vector<Sightings> seen = sightings(groups.means, ranges, camera, config);
+  const std::vector<Sightings> seen = sightings(groups.means, ranges, camera, config, threads);
   PointCloud kept;
   for (std::size_t i = 0; i < map.size(); ++i) {
     if (!stays(seen[groups.group_of[i]], config)) continue;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -86,20 +87,22 @@ struct Sightings {
 };
 
 /// For each point (world), what the views tell of it. One that has the point out of view,
-/// hidden, or where its range is not known, tells nothing.
+/// hidden, or where its range is not known, tells nothing. The same with any number of threads.
 [[nodiscard]] std::vector<Sightings> sightings(std::span<const Eigen::Vector3f> points,
                                                std::span<const PosedRange> ranges,
                                                const CameraModel& camera,
-                                               const FreeSpaceConfig& config);
+                                               const FreeSpaceConfig& config,
+                                               std::size_t threads = 1);
 
 /// Whether a point is part of the static world as it is at the end.
 [[nodiscard]] bool stays(const Sightings& s, const FreeSpaceConfig& config);
 
 /// The points of a map that stay, by what the frames tell of them. Points of a cube of `cell_m`
-/// have one fate: that of their mean.
+/// have one fate: that of their mean. The same with any number of threads.
 [[nodiscard]] PointCloud without_moved(const PointCloud& map,
                                        std::span<const PosedRange> ranges,
                                        const CameraModel& camera,
-                                       const FreeSpaceConfig& config);
+                                       const FreeSpaceConfig& config,
+                                       std::size_t threads = 1);
 
 }  // namespace stillmap

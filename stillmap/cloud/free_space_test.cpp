@@ -2,6 +2,7 @@
 #include "stillmap/cloud/free_space.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -205,6 +206,17 @@ TEST(FreeSpace, SightingsAgreeWithBruteForce) {
   EXPECT_GT(seen.size(), 4U);
   EXPECT_GT(through.size(), 4U);
   EXPECT_GT(moving.size(), 2U);
+
+  const auto numbers = [](const Sightings& s) {
+    return std::array{s.seen, s.moving, s.beside, s.through, s.seen_last, s.through_last};
+  };
+  for (const std::size_t threads : {2U, 3U, 20U}) {
+    const std::vector<Sightings> several = sightings(points, keyframes, c, {}, threads);
+    ASSERT_EQ(several.size(), all.size());
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      ASSERT_EQ(numbers(several[i]), numbers(all[i])) << i << " with " << threads << " threads";
+    }
+  }
 }
 
 TEST(FreeSpace, ADistortionThatFoldsBackShowsNothingFromOutside) {

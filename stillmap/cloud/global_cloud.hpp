@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <span>
 
 #include <Eigen/Geometry>
@@ -17,7 +18,9 @@ struct PosedCloud {
 
 /// The union of the clouds in world coordinates (Fan 2020, Eq. (1)), thinned to one point a voxel
 /// as VoxelGrid does it: mean position and colour, winning label. A cloud without labels has label
-/// 0 everywhere; normals are left out.
-[[nodiscard]] PointCloud global_cloud(std::span<const PosedCloud> clouds, double voxel_size_m);
+/// 0 everywhere; normals are left out. The same bits with any number of threads.
+[[nodiscard]] PointCloud global_cloud(std::span<const PosedCloud> clouds,
+                                      double voxel_size_m,
+                                      std::size_t threads = 1);
 
 }  // namespace stillmap

@@ -2,6 +2,7 @@
 #include "stillmap/cloud/global_cloud.hpp"
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -85,10 +86,35 @@ TEST(GlobalCloud, AgreesWithBruteForceOverSeveralClouds) {
   EXPECT_EQ(global_cloud(clouds, 0.2).positions, cloud.positions);
 }
 
+TEST(GlobalCloud, GivesTheSameBitsWithAnyNumberOfThreads) {
+  std::vector<PointCloud> local = {random_cloud(20000, 1.0, 7), random_cloud(30000, 1.5, 8)};
+  local[0].positions[5].x() = std::numeric_limits<float>::quiet_NaN();
+  local[0].positions[7].y() = std::numeric_limits<float>::infinity();
+  // Labels on one side alone, so that only some of the threads meet any.
+  for (std::size_t i = 0; i < local[1].size(); ++i) {
+    if (local[1].positions[i].x() < 0.5F) local[1].labels[i] = 0;
+  }
+  const Eigen::Isometry3d T = make_pose(so3_exp({0.1, 0, 0}), {0.3, 0.2, 0.1});
+  local[0].labels.clear();
+  for (const double voxel_m : {0.01, 0.2, 5.0}) {
+    const std::vector<PosedCloud> clouds = {{Eigen::Isometry3d::Identity(), &local[0]},
+                                            {T, &local[1]}};
+    const PointCloud one = global_cloud(clouds, voxel_m);
+    EXPECT_FALSE(one.empty());
+    for (const std::size_t threads : {2U, 3U, 8U}) {
+      const PointCloud several = global_cloud(clouds, voxel_m, threads);
+      EXPECT_EQ(several.positions, one.positions) << voxel_m << " " << threads;
+      EXPECT_EQ(several.colors, one.colors);
+      EXPECT_EQ(several.labels, one.labels);
+    }
+  }
+}
+
 TEST(GlobalCloud, EmptyWithoutClouds) {
   const PointCloud none;
   const std::vector<PosedCloud> clouds = {{Eigen::Isometry3d::Identity(), &none}};
   EXPECT_TRUE(global_cloud({}, 0.01).empty());
+  EXPECT_TRUE(global_cloud(clouds, 0.01, 3).empty());
   EXPECT_TRUE(global_cloud(clouds, 0.01).empty());
 }
 

@@ -47,4 +47,26 @@ void produce_in_parallel(std::size_t count,
   }
 }
 
+/// Calls work(i) for i from 0 to count - 1, each on a thread of its own, the first on this one.
+/// Passes on what the first of them throws, in their order, after all have ended.
+template <class Work>
+void in_parallel(std::size_t count, const Work& work) {
+  std::vector<std::exception_ptr> failures(count);
+  const auto attempt = [&](std::size_t i) {
+    try {
+      work(i);
+    } catch (...) {
+      failures[i] = std::current_exception();
+    }
+  };
+  {
+    std::vector<std::jthread> others;
+    for (std::size_t i = 1; i < count; ++i) others.emplace_back(attempt, i);
+    if (count > 0) attempt(0);
+  }
+  for (const std::exception_ptr& failure : failures) {
+    if (failure) std::rethrow_exception(failure);
+  }
+}
+
 }  // namespace stillmap

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <stdexcept>
+#include <thread>
 
 #include <gtest/gtest.h>
 
@@ -61,6 +62,32 @@ TEST(ProduceInParallel, StopsTheThreadsWhenTheConsumerThrows) {
 TEST(ProduceInParallel, NeedsNothingToDo) {
   produce_in_parallel(
       0, 2, [](std::size_t i) { return i; }, [](std::size_t, std::size_t) { FAIL(); });
+}
+
+TEST(InParallel, DoesEachOnceAndTheFirstHere) {
+  for (const std::size_t count : {0U, 1U, 2U, 7U}) {
+    std::vector<int> done(count, 0);
+    std::vector<std::thread::id> threads(count);
+    in_parallel(count, [&](std::size_t i) {
+      ++done[i];
+      threads[i] = std::this_thread::get_id();
+    });
+    EXPECT_EQ(done, std::vector<int>(count, 1));
+    for (std::size_t i = 0; i < count; ++i) {
+      EXPECT_EQ(threads[i] == std::this_thread::get_id(), i == 0) << i;
+    }
+  }
+}
+
+TEST(InParallel, PassesOnTheFirstFailureAfterAllHaveEnded) {
+  std::atomic<int> ended = 0;
+  const auto work = [&](std::size_t i) {
+    ++ended;
+    if (i == 1) throw std::runtime_error("one");
+    if (i == 3) throw std::invalid_argument("three");
+  };
+  EXPECT_THROW(in_parallel(5, work), std::runtime_error);
+  EXPECT_EQ(ended, 5);
 }
 
 }  // namespace

@@ -87,23 +87,29 @@ DynamicObjects::DynamicObjects(const DynamicObjectsConfig& config,
   if (mode == DynamicsMode::kPaper) config_.extension.variant = "paper";
 }
 
-DynamicsResult DynamicObjects::judge(const DepthImage& depth,
-                                     const FrameObjects& objects,
-                                     std::span<const PreviousDepth> previous,
-                                     std::span<const TrackId> moving) const {
+MeasuredObjects DynamicObjects::measure(const DepthImage& depth,
+                                        const FrameObjects& objects) const {
   STILLMAP_CHECK(objects.mask.mat.empty() || objects.mask.mat.size() == depth.mat.size());
-  const MaskAreas areas = mask_areas(objects.mask);
+  MeasuredObjects measured{mask_areas(objects.mask), {}};
   const OutlierRule rule = outlier_rule(config_.extension);
-  std::vector<ObjectDepths> depths;
   for (const TrackedObject& object : objects.objects) {
     const int id = object.detection.id;
-    STILLMAP_CHECK(id == static_cast<int>(depths.size()) + 1 && id <= 255);
-    depths.push_back(
-        object_depths(depth, objects.mask, id, areas[static_cast<std::size_t>(id)], rule));
+    STILLMAP_CHECK(id == static_cast<int>(measured.depths.size()) + 1 && id <= 255);
+    const MaskArea& area = measured.areas[static_cast<std::size_t>(id)];
+    measured.depths.push_back(object_depths(depth, objects.mask, id, area, rule));
   }
+  return measured;
+}
+
+DynamicsResult DynamicObjects::judge(const DepthImage& depth,
+                                     const FrameObjects& objects,
+                                     const MeasuredObjects& measured,
+                                     std::span<const PreviousDepth> previous,
+                                     std::span<const TrackId> moving) const {
+  STILLMAP_CHECK(measured.depths.size() == objects.objects.size());
   DynamicsResult result;
-  result.states = judge_states(objects, depths, moving);
-  result.mask.raw = dynamic_pixels(objects, areas, result.states, depth.mat.size());
+  result.states = judge_states(objects, measured.depths, moving);
+  result.mask.raw = dynamic_pixels(objects, measured.areas, result.states, depth.mat.size());
   WarpedDepth expected;
   cv::Mat1f known_static;
   if (mode_ == DynamicsMode::kFull && !previous.empty()) {
@@ -113,10 +119,9 @@ DynamicsResult DynamicObjects::judge(const DepthImage& depth,
     // Without the dynamic pixels of then, what is as it was may just not have moved yet.
     if (!previous.front().dynamic.empty()) known_static = expected.mat;
   }
-  result.mask.extended =
-      mode_ == DynamicsMode::kMask || !config_.extension.enabled
-          ? result.mask.raw
-          : extended_mask(depth, objects, areas, depths, result.states, known_static);
+  result.mask.extended = mode_ == DynamicsMode::kMask || !config_.extension.enabled
+                             ? result.mask.raw
+                             : extended_mask(depth, objects, measured, result.states, known_static);
   result.mask.jumps = jumps(depth, previous, expected);
   return result;
 }
@@ -169,8 +174,7 @@ ObjectState DynamicObjects::state_by_class(const TrackedObject& object,
 
 cv::Mat1b DynamicObjects::extended_mask(const DepthImage& depth,
                                         const FrameObjects& objects,
-                                        const MaskAreas& areas,
-                                        const std::vector<ObjectDepths>& depths,
+                                        const MeasuredObjects& measured,
                                         const std::vector<ObjectState>& states,
                                         const cv::Mat1f& known_static) const {
   cv::Mat1b extended(depth.mat.size(), std::uint8_t{0});
@@ -178,13 +182,13 @@ cv::Mat1b DynamicObjects::extended_mask(const DepthImage& depth,
     if (!states[i].dynamic) continue;
     const TrackedObject& object = objects.objects[i];
     const int id = object.detection.id;
-    const MaskArea& area = areas[static_cast<std::size_t>(id)];
+    const MaskArea& area = measured.areas[static_cast<std::size_t>(id)];
     const ObjectView view{depth, objects.mask, id, object.detection.box};
     // A box in place of a mask holds all that is known already.
     const PixelPatch patch =
         object.mask_source == MaskSource::kBox
             ? mask_patch(view, area)
-            : extend_mask(view, area, depths[i], config_.extension, known_static);
+            : extend_mask(view, area, measured.depths[i], config_.extension, known_static);
     paint(patch, static_cast<std::uint8_t>(id), extended);
   }
   return extended;

@@ -103,6 +103,12 @@ struct PreviousDepth {
   cv::Mat1b dynamic = {};  ///< not 0 where that frame was not static; may be empty
 };
 
+/// What a frame alone says of its objects.
+struct MeasuredObjects {
+  MaskAreas areas;
+  std::vector<ObjectDepths> depths;  ///< in the order of the frame's objects
+};
+
 /// Judges the objects of a frame and finds the pixels of those that move: sections 2 and 3 of
 /// Fan 2020. Keeps nothing between frames; the same input gives the same bits.
 class DynamicObjects {
@@ -110,12 +116,25 @@ class DynamicObjects {
   /// Throws Error for categories that make no sense.
   DynamicObjects(const DynamicObjectsConfig& config, const CameraModel& camera, DynamicsMode mode);
 
-  /// `previous`: earlier frames, the best first; without any nothing has jumped. kPaper needs one,
-  /// and no motion of it. `moving`: tracks known to move, dynamic in kFull whoever is near.
+  /// The part of the work that needs nothing of earlier frames.
+  [[nodiscard]] MeasuredObjects measure(const DepthImage& depth, const FrameObjects& objects) const;
+
+  /// `measured`: what measure() says of the same. `previous`: earlier frames, the best first;
+  /// without any nothing has jumped. kPaper needs one, and no motion of it. `moving`: tracks known
+  /// to move, dynamic in kFull whoever is near.
+  [[nodiscard]] DynamicsResult judge(const DepthImage& depth,
+                                     const FrameObjects& objects,
+                                     const MeasuredObjects& measured,
+                                     std::span<const PreviousDepth> previous,
+                                     std::span<const TrackId> moving = {}) const;
+
+  /// Both at once.
   [[nodiscard]] DynamicsResult judge(const DepthImage& depth,
                                      const FrameObjects& objects,
                                      std::span<const PreviousDepth> previous,
-                                     std::span<const TrackId> moving = {}) const;
+                                     std::span<const TrackId> moving = {}) const {
+    return judge(depth, objects, measure(depth, objects), previous, moving);
+  }
 
   [[nodiscard]] const CategoryTable& categories() const { return categories_; }
 
@@ -127,8 +146,7 @@ class DynamicObjects {
                                            const ObjectDepths& depths) const;
   [[nodiscard]] cv::Mat1b extended_mask(const DepthImage& depth,
                                         const FrameObjects& objects,
-                                        const MaskAreas& areas,
-                                        const std::vector<ObjectDepths>& depths,
+                                        const MeasuredObjects& measured,
                                         const std::vector<ObjectState>& states,
                                         const cv::Mat1f& known_static) const;
   [[nodiscard]] cv::Mat1b jumps(const DepthImage& depth,

@@ -3,19 +3,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
-#include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "stillmap/core/error.hpp"
 #include "stillmap/features/brief.hpp"
+#include "stillmap/features/fast_corners.hpp"
+#include "stillmap/features/patch_blur.hpp"
 #include "stillmap/features/spread.hpp"
 
 namespace stillmap {
 namespace {
 
 constexpr int kBorderPx = kPatchRadiusPx + 2;  // a rotated, rounded patch stays inside
-constexpr int kFastRadiusPx = 3;
 constexpr int kCellPx = 32;
 
 int cell_count(int length_px) {
@@ -55,71 +56,64 @@ OrbExtractor::OrbExtractor(const OrbConfig& config, const CameraModel& camera)
     if (size.width <= 2 * kBorderPx + kCellPx / 2 || size.height <= 2 * kBorderPx + kCellPx / 2) {
       break;  // too small to hold a feature
     }
-    Level level;
-    level.image.create(size);
-    level.blurred.create(size);
-    level.feature_count = static_cast<int>(std::lround(config.features / scale / total));
-    levels_.push_back(level);
+    levels_.push_back({size, static_cast<int>(std::lround(config.features / scale / total))});
   }
 }
 
-void OrbExtractor::build_pyramid(const GrayImage& gray) {
+ImageCorners OrbExtractor::corners(const GrayImage& gray) const {
   STILLMAP_CHECK(gray.mat.cols == camera_.width_px && gray.mat.rows == camera_.height_px);
+  ImageCorners found;
   for (std::size_t i = 0; i < levels_.size(); ++i) {
-    Level& level = levels_[i];
+    ImageCorners::Level level;
     if (i == 0) {
       level.image = gray.mat;  // shared, only read
     } else {
-      cv::resize(levels_[i - 1].image, level.image, level.image.size(), 0, 0, cv::INTER_LINEAR);
+      cv::resize(found.levels[i - 1].image, level.image, levels_[i].size, 0, 0, cv::INTER_LINEAR);
     }
-    cv::GaussianBlur(level.image, level.blurred, cv::Size(7, 7), 2, 2, cv::BORDER_REFLECT_101);
+    level.blurred = blurred_for_descriptors(level.image);
+    level.corners = detect(level.image);
+    found.levels.push_back(std::move(level));
   }
+  return found;
 }
 
-std::vector<cv::KeyPoint> OrbExtractor::detect(const cv::Mat1b& image,
-                                               const cv::Mat1b& excluded) const {
-  constexpr int kMargin = kBorderPx - kFastRadiusPx;
-  const cv::Rect area(kMargin, kMargin, image.cols - 2 * kMargin, image.rows - 2 * kMargin);
-  std::vector<cv::KeyPoint> corners;
-  cv::FAST(image(area), corners, config_.corner_threshold, true);
+std::vector<cv::KeyPoint> OrbExtractor::detect(const cv::Mat1b& image) const {
+  const cv::Mat1b scores = corner_scores(image);
+  const cv::Rect inner(
+      kBorderPx, kBorderPx, image.cols - 2 * kBorderPx, image.rows - 2 * kBorderPx);
+  std::vector<cv::KeyPoint> corners = local_maxima(scores, inner, config_.corner_threshold);
 
   // Where a cell has none, weaker corners will do.
+  constexpr int kMargin = kBorderPx - kCornerCircleRadiusPx;
+  const cv::Rect area(kMargin, kMargin, image.cols - 2 * kMargin, image.rows - 2 * kMargin);
   const int columns = cell_count(area.width), rows = cell_count(area.height);
   std::vector<char> occupied(static_cast<std::size_t>(columns * rows), 0);
   for (const cv::KeyPoint& corner : corners) {
-    const int column = std::min(static_cast<int>(corner.pt.x) * columns / area.width, columns - 1);
-    const int row = std::min(static_cast<int>(corner.pt.y) * rows / area.height, rows - 1);
+    const int column = (static_cast<int>(corner.pt.x) - area.x) * columns / area.width;
+    const int row = (static_cast<int>(corner.pt.y) - area.y) * rows / area.height;
     occupied[static_cast<std::size_t>(row * columns + column)] = 1;
   }
-  std::vector<cv::KeyPoint> weak;
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) {
       if (occupied[static_cast<std::size_t>(row * columns + column)] != 0) continue;
-      const int x0 = column * area.width / columns, x1 = (column + 1) * area.width / columns;
-      const int y0 = row * area.height / rows, y1 = (row + 1) * area.height / rows;
-      const cv::Rect cell(std::max(x0 - kFastRadiusPx, 0), std::max(y0 - kFastRadiusPx, 0), 0, 0);
-      const cv::Rect with_rim(cell.x,
-                              cell.y,
-                              std::min(x1 + kFastRadiusPx, area.width) - cell.x,
-                              std::min(y1 + kFastRadiusPx, area.height) - cell.y);
-      cv::FAST(image(area)(with_rim), weak, config_.weak_corner_threshold, true);
-      for (cv::KeyPoint& corner : weak) {
-        corner.pt += cv::Point2f(with_rim.tl());
-        corners.push_back(corner);
-      }
+      const cv::Point from(column * area.width / columns, row * area.height / rows);
+      const cv::Point to((column + 1) * area.width / columns, (row + 1) * area.height / rows);
+      const cv::Rect cell = cv::Rect(area.tl() + from, area.tl() + to) & inner;
+      const std::vector<cv::KeyPoint> weak =
+          local_maxima(scores, cell, config_.weak_corner_threshold);
+      corners.insert(corners.end(), weak.begin(), weak.end());
     }
   }
-  for (cv::KeyPoint& corner : corners) corner.pt += cv::Point2f(area.tl());
-  if (!excluded.empty()) remove_excluded(corners, excluded, image.size());
   return corners;
 }
 
-void OrbExtractor::append(std::size_t level,
+void OrbExtractor::append(std::size_t number,
+                          const ImageCorners::Level& level,
                           const std::vector<cv::KeyPoint>& corners,
                           Features& features) const {
   // Sizes are rounded, so the scale of a level is not quite the nominal one. Pixels are squares
   // with their centres at whole numbers: it is their edges, half a pixel off, that scale.
-  const cv::Mat1b& image = levels_[level].image;
+  const cv::Mat1b& image = level.image;
   const float scale_x = static_cast<float>(camera_.width_px) / static_cast<float>(image.cols);
   const float scale_y = static_cast<float>(camera_.height_px) / static_cast<float>(image.rows);
   for (const cv::KeyPoint& corner : corners) {
@@ -127,9 +121,9 @@ void OrbExtractor::append(std::size_t level,
     const float angle_deg = patch_orientation_deg(image, at);
     features.raw_px.emplace_back((corner.pt.x + 0.5F) * scale_x - 0.5F,
                                  (corner.pt.y + 0.5F) * scale_y - 0.5F);
-    features.level.push_back(static_cast<std::uint8_t>(level));
+    features.level.push_back(static_cast<std::uint8_t>(number));
     features.angle_deg.push_back(angle_deg);
-    features.descriptors.push_back(rotated_brief(levels_[level].blurred, at, angle_deg));
+    features.descriptors.push_back(rotated_brief(level.blurred, at, angle_deg));
   }
 }
 
@@ -147,16 +141,17 @@ void OrbExtractor::place_in_space(const DepthImage& depth, Features& features) c
   features.grid = FeatureGrid(features.px, camera_.width_px, camera_.height_px);
 }
 
-Features OrbExtractor::extract(const GrayImage& gray,
+Features OrbExtractor::extract(ImageCorners corners,
                                const DepthImage& depth,
-                               const cv::Mat1b& excluded) {
-  STILLMAP_CHECK(gray.mat.size() == depth.mat.size());
+                               const cv::Mat1b& excluded) const {
+  STILLMAP_CHECK(depth.mat.cols == camera_.width_px && depth.mat.rows == camera_.height_px);
   STILLMAP_CHECK(excluded.empty() || excluded.size() == depth.mat.size());
-  build_pyramid(gray);
+  STILLMAP_CHECK(corners.levels.size() == levels_.size());
   Features features;
   for (std::size_t i = 0; i < levels_.size(); ++i) {
-    append(
-        i, spread_evenly(detect(levels_[i].image, excluded), levels_[i].feature_count), features);
+    ImageCorners::Level& level = corners.levels[i];
+    if (!excluded.empty()) remove_excluded(level.corners, excluded, level.image.size());
+    append(i, level, spread_evenly(std::move(level.corners), levels_[i].feature_count), features);
   }
   place_in_space(depth, features);
   return features;

@@ -35,36 +35,54 @@ struct OrbConfig {
   }
 };
 
+/// What features need of an image whatever is excluded from it: its pyramid, and all corners.
+struct ImageCorners {
+  struct Level {
+    cv::Mat1b image;
+    cv::Mat1b blurred;
+    std::vector<cv::KeyPoint> corners;
+  };
+  std::vector<Level> levels;  ///< the finest first
+};
+
 /// Oriented FAST corners with rotated BRIEF descriptors (Rublee et al., "ORB", ICCV 2011) over an
 /// image pyramid, spread evenly over the image on each level.
 ///
-/// Holds the buffers of the pyramid, so that frames of one size cost no allocation of images; one
-/// extractor serves one thread. The result depends on the image alone.
+/// Remembers nothing of images: one extractor serves any number of threads.
 class OrbExtractor {
  public:
   OrbExtractor(const OrbConfig& config, const CameraModel& camera);
 
-  /// Features of `gray`, at ideal and raw pixels, each with the depth that `depth` has there. The
-  /// images have the camera's size. None where `excluded`, which may be empty, is not 0: then the
+  /// The corners of an image of the camera's size: the part of the work that can be done before it
+  /// is known what is excluded. Its finest level is the image itself, not a copy.
+  [[nodiscard]] ImageCorners corners(const GrayImage& gray) const;
+
+  /// Features at some of the corners, at ideal and raw pixels, each with the depth that `depth`,
+  /// of the camera's size, has there. None where `excluded`, which may be empty, is not 0: then the
   /// rest of the image gets all of them.
+  [[nodiscard]] Features extract(ImageCorners corners,
+                                 const DepthImage& depth,
+                                 const cv::Mat1b& excluded = {}) const;
+
+  /// Both at once.
   [[nodiscard]] Features extract(const GrayImage& gray,
                                  const DepthImage& depth,
-                                 const cv::Mat1b& excluded = {});
+                                 const cv::Mat1b& excluded = {}) const {
+    return extract(corners(gray), depth, excluded);
+  }
 
   /// Size of a pixel of each level in pixels of the full image.
   [[nodiscard]] const std::vector<float>& level_scales() const { return scales_; }
 
  private:
   struct Level {
-    cv::Mat1b image;
-    cv::Mat1b blurred;
+    cv::Size size;
     int feature_count = 0;
   };
 
-  void build_pyramid(const GrayImage& gray);
-  [[nodiscard]] std::vector<cv::KeyPoint> detect(const cv::Mat1b& image,
-                                                 const cv::Mat1b& excluded) const;
-  void append(std::size_t level,
+  [[nodiscard]] std::vector<cv::KeyPoint> detect(const cv::Mat1b& image) const;
+  void append(std::size_t number,
+              const ImageCorners::Level& level,
               const std::vector<cv::KeyPoint>& corners,
               Features& features) const;
   void place_in_space(const DepthImage& depth, Features& features) const;

@@ -23,6 +23,11 @@ Features extract(const GrayImage& image, const OrbConfig& config = {}) {
   return extractor.extract(image, no_depth(image));
 }
 
+Features extract(const GrayImage& image, const cv::Mat1b& excluded) {
+  const OrbExtractor extractor({}, camera_of_size(image.mat.cols, image.mat.rows));
+  return extractor.extract(image, no_depth(image), excluded);
+}
+
 TEST(PyramidScales, ArePowersOfTheFactor) {
   const std::vector<float> scales = pyramid_scales({.levels = 4, .scale_factor = 1.5});
   EXPECT_EQ(scales, (std::vector<float>{1.0F, 1.5F, 2.25F, 3.375F}));
@@ -61,6 +66,31 @@ TEST(OrbExtractor, SameImageGivesSameBits) {
   EXPECT_EQ(a.level, b.level);
   EXPECT_EQ(a.angle_deg, b.angle_deg);
   EXPECT_EQ(a.descriptors, b.descriptors);
+}
+
+TEST(OrbExtractor, CornersFoundAheadOfOtherImagesGiveTheSameBits) {
+  const OrbExtractor extractor({}, camera_of_size(320, 240));
+  std::vector<ImageCorners> ahead;
+  for (std::uint32_t seed = 1; seed < 4; ++seed) {
+    ahead.push_back(extractor.corners(textured_image(320, 240, seed)));
+  }
+  for (std::uint32_t seed = 1; seed < 4; ++seed) {
+    const GrayImage image = textured_image(320, 240, seed);
+    cv::Mat1b excluded(240, 320, std::uint8_t{0});
+    excluded.colRange(50 * static_cast<int>(seed), 200).setTo(1);
+    const Features a = extract(image, excluded);
+    const Features b = extractor.extract(std::move(ahead[seed - 1]), no_depth(image), excluded);
+    EXPECT_GT(a.size(), 100U);
+    EXPECT_EQ(a.raw_px, b.raw_px);
+    EXPECT_EQ(a.descriptors, b.descriptors);
+    const auto is_excluded = [&](const Eigen::Vector2f& px) {
+      return excluded(cvRound(px.y()), cvRound(px.x())) != 0;
+    };
+    // A corner of a coarse level is rounded to another pixel of the finest.
+    for (std::size_t i = 0; i < b.size(); ++i) {
+      EXPECT_FALSE(b.level[i] == 0 && is_excluded(b.raw_px[i])) << b.raw_px[i].transpose();
+    }
+  }
 }
 
 TEST(OrbExtractor, DoesNotWriteToTheImage) {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include <zlib.h>
+#include <libdeflate.h>
 
 #include "stillmap/io/inflate.hpp"
 
@@ -36,8 +36,8 @@ std::optional<Chunk> next_chunk(std::string_view& rest) {
   const std::size_t size = big_endian(rest);
   if (size > rest.size() - kAround) return std::nullopt;
   const std::string_view checked = rest.substr(4, 4 + size);
-  const uLong crc = crc32_z(0, reinterpret_cast<const Bytef*>(checked.data()), checked.size());
-  if (crc != big_endian(rest.substr(8 + size))) return std::nullopt;
+  if (libdeflate_crc32(0, checked.data(), checked.size()) != big_endian(rest.substr(8 + size)))
+    return std::nullopt;
   rest.remove_prefix(kAround + size);
   return Chunk{checked.substr(0, 4), checked.substr(4)};
 }

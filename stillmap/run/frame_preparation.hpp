@@ -7,23 +7,32 @@
 #include "stillmap/core/ahead.hpp"
 #include "stillmap/run/frame_source.hpp"
 #include "stillmap/run/object_source.hpp"
+#include "stillmap/system/system.hpp"
 
 namespace stillmap {
+
+/// A frame with all that the system can be told of it.
+struct ReadyFrame {
+  FramePtr frame;
+  FrameObjects objects;
+  PreparedFrame prepared;
+};
 
 /// What became of the next frame of a sequence, and the frames that are ready for the system now:
 /// others than that, while objects wait for later frames.
 struct PreparedFrames {
   SourcedFrame source;                    ///< without its frame; at the end, empty
   std::optional<double> segmentation_ms;  ///< where objects were looked for
-  std::vector<FrameWithObjects> ready;
+  std::vector<ReadyFrame> ready;
   bool at_end = false;  ///< nothing was read: these are the last
 };
 
-/// Reads frames and finds their objects; with threads, each of the two runs ahead on one of its
-/// own. The results do not depend on that.
+/// Reads frames, finds their objects and prepares them for the system; with threads, reading runs
+/// ahead on one, the rest on another. The results do not depend on that.
 class FramePreparation {
  public:
-  FramePreparation(FrameSource source, ObjectSource objects, bool ahead);
+  /// The system outlives this.
+  FramePreparation(FrameSource source, ObjectSource objects, const System& system, bool ahead);
 
   /// The next frame's; once more at the end of the sequence, then nothing. Throws what reading and
   /// segmentation throw.
@@ -31,10 +40,12 @@ class FramePreparation {
 
  private:
   [[nodiscard]] std::optional<PreparedFrames> prepare();
+  [[nodiscard]] std::vector<ReadyFrame> prepare(std::vector<FrameWithObjects> frames) const;
 
   static constexpr std::size_t kAhead = 4;
   FrameSource source_;
   ObjectSource objects_;
+  const System& system_;
   bool ended_ = false;
   Ahead<SourcedFrame> read_;
   Ahead<PreparedFrames> prepared_;  // last: its thread uses all else

@@ -33,8 +33,9 @@ void run_through(System& system, RunLog& log, FramePreparation& prepared) {
     if (!next->at_end) log.add_stage_time("reading", next->source.reading_ms);
     if (!next->source.damage.empty()) log.skip(next->source);
     if (next->segmentation_ms) log.add_stage_time("segmentation", *next->segmentation_ms);
-    for (FrameWithObjects& ready : next->ready) {
-      log.add(*ready.frame, system.process(ready.frame, std::move(ready.objects)));
+    for (ReadyFrame& ready : next->ready) {
+      log.add(*ready.frame,
+              system.process(ready.frame, std::move(ready.objects), std::move(ready.prepared)));
     }
   }
 }
@@ -77,6 +78,7 @@ SequenceRun run_sequence(const TumSequence& sequence,
   }
   FramePreparation prepared(FrameSource(sequence, frames),
                             ObjectSource(options.segmenter, config.dynamics.object_tracking()),
+                            system,
                             options.threads > 1);
   run_through(system, log, prepared);
   return log.finish(system);

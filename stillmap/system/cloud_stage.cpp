@@ -39,7 +39,8 @@ StaticView static_view(const RgbdFrame& frame,
 
 PointCloud static_map(std::span<const PosedView> views,
                       const CameraModel& camera,
-                      const CloudConfig& config) {
+                      const CloudConfig& config,
+                      std::size_t threads) {
   std::vector<PosedCloud> clouds;
   std::vector<PosedRange> ranges;
   for (const PosedView& posed : views) {
@@ -47,9 +48,9 @@ PointCloud static_map(std::span<const PosedView> views,
     clouds.push_back({posed.T_world_camera, &posed.view->cloud});
     ranges.push_back({posed.T_world_camera, &posed.view->range});
   }
-  const PointCloud all = global_cloud(clouds, config.voxel_size_m);
+  const PointCloud all = global_cloud(clouds, config.voxel_size_m, threads);
   if (config.free_space != "on") return all;
-  return without_moved(all, ranges, camera, config.free);
+  return without_moved(all, ranges, camera, config.free, threads);
 }
 
 NotStatic not_static(const DynamicMask& mask, const cv::Mat1b& excluded) {

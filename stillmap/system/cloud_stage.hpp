@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string>
 #include <string_view>
@@ -72,10 +73,12 @@ struct PosedView {
   const StaticView* view;  ///< not null; not owned
 };
 
-/// The map of the static world from views in the order of their time. `config` is decided.
+/// The map of the static world from views in the order of their time. `config` is decided. The same
+/// with any number of threads.
 [[nodiscard]] PointCloud static_map(std::span<const PosedView> views,
                                     const CameraModel& camera,
-                                    const CloudConfig& config);
+                                    const CloudConfig& config,
+                                    std::size_t threads = 1);
 
 /// The static surface in a frame. `not_static.excluded` leaves it; `labels` may be empty; `config`
 /// is decided.

@@ -94,14 +94,20 @@ std::vector<PreviousDepth> DynamicsStage::previous(
   return frames;
 }
 
+MeasuredObjects DynamicsStage::measure(const RgbdFrame& frame, const FrameObjects& objects) const {
+  STILLMAP_CHECK(enabled());
+  return objects_->measure(frame.depth, objects);
+}
+
 FrameDynamics DynamicsStage::judge(
     const RgbdFrame& frame,
     FrameObjects objects,
+    const MeasuredObjects& measured,
     const std::optional<Eigen::Isometry3d>& T_world_camera_expected) const {
   STILLMAP_CHECK(enabled());
   FrameDynamics dynamics;
-  dynamics.judged =
-      objects_->judge(frame.depth, objects, previous(T_world_camera_expected), motions_.moving());
+  dynamics.judged = objects_->judge(
+      frame.depth, objects, measured, previous(T_world_camera_expected), motions_.moving());
   dynamics.objects = std::move(objects);
   dynamics.excluded = widened(covered(dynamics.judged.mask), config_.feature_margin_px);
   return dynamics;

@@ -4,6 +4,7 @@
 #include <deque>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "stillmap/core/rgbd_frame.hpp"
@@ -70,11 +71,25 @@ class DynamicsStage {
   /// Whether there is anything to do: the mode is not "off".
   [[nodiscard]] bool enabled() const { return objects_.has_value(); }
 
-  /// Judges a frame whose pose is only expected; none when nothing is.
+  /// What a frame alone says of its objects. May be called on any thread at any time.
+  [[nodiscard]] MeasuredObjects measure(const RgbdFrame& frame, const FrameObjects& objects) const;
+
+  /// Judges a frame whose pose is only expected; none when nothing is. `measured`: what measure()
+  /// says of it.
   [[nodiscard]] FrameDynamics judge(
       const RgbdFrame& frame,
       FrameObjects objects,
+      const MeasuredObjects& measured,
       const std::optional<Eigen::Isometry3d>& T_world_camera_expected) const;
+
+  /// Both at once.
+  [[nodiscard]] FrameDynamics judge(
+      const RgbdFrame& frame,
+      FrameObjects objects,
+      const std::optional<Eigen::Isometry3d>& T_world_camera_expected) const {
+    const MeasuredObjects measured = measure(frame, objects);
+    return judge(frame, std::move(objects), measured, T_world_camera_expected);
+  }
 
   /// Of the features off `dynamics.excluded`, those that may be used. The next frame's are compared
   /// with all of them.

@@ -27,8 +27,9 @@ struct FrameResult {
   TrackedFrame tracked;
   FrameDynamics dynamics;  ///< empty when nothing is done about what moves
   bool is_keyframe = false;
-  double pose_ms = 0;             ///< from the frame's arrival to its pose
-  std::vector<StageTime> stages;  ///< of this thread, in order; "mapping" includes waiting for it
+  double pose_ms = 0;  ///< of all that leads to its pose, preparation included
+  /// In order; "mapping" includes waiting for it, "dynamics" and "features" their preparation.
+  std::vector<StageTime> stages;
 };
 
 }  // namespace stillmap

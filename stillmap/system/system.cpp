@@ -27,6 +27,7 @@ System::System(const SystemConfig& config, const CameraModel& camera, const Syst
     : config_(checked(config)),
       cloud_config_(config.cloud.decided(config.dynamics.mode)),
       camera_(camera),
+      threads_(static_cast<std::size_t>(std::max(options.threads, 1))),
       localize_only_(options.localize_only),
       dynamics_(config.dynamics, camera, config.seed),
       extractor_(config.tracking.orb, camera),
@@ -35,7 +36,7 @@ System::System(const SystemConfig& config, const CameraModel& camera, const Syst
       tracker_(config.tracking.tracker, config.relocalization, camera, measure_, config.seed),
       worker_(options.threads > 1 ? std::make_unique<Worker>() : nullptr),
       mapping_jobs_(worker_.get()),
-      views_(cloud_config_, camera, config.mapping.lag_frames, worker_.get()),
+      views_(cloud_config_, camera, options.threads > 1),
       loops_(config.loop,
              camera,
              between_views(config, extractor_.level_scales()),
@@ -58,7 +59,25 @@ void System::load(Session session) {
   if (!worlds.empty()) next_world_ = WorldId(worlds.back().value + 1);
 }
 
+PreparedFrame System::prepare(const RgbdFrame& frame, const FrameObjects& objects) const {
+  Stopwatch stage;
+  PreparedFrame prepared;
+  prepared.corners = extractor_.corners(frame.gray);
+  prepared.corners_ms = stage.lap_ms();
+  if (dynamics_.enabled()) prepared.objects = dynamics_.measure(frame, objects);
+  prepared.objects_ms = stage.lap_ms();
+  return prepared;
+}
+
 FrameResult System::process(const FramePtr& frame, FrameObjects objects, MaskOrigin origin) {
+  PreparedFrame prepared = prepare(*frame, objects);
+  return process(frame, std::move(objects), std::move(prepared), origin);
+}
+
+FrameResult System::process(const FramePtr& frame,
+                            FrameObjects objects,
+                            PreparedFrame prepared,
+                            MaskOrigin origin) {
   Stopwatch total, stage;
   FrameResult result;
   update_map(frame_number_);
@@ -68,11 +87,12 @@ FrameResult System::process(const FramePtr& frame, FrameObjects objects, MaskOri
       tracker_.expected_pose(frame->stamp.seconds, session_.map);
   if (expected) expected = T_odometry_world_ * *expected;
   if (dynamics_.enabled()) {
-    result.dynamics = dynamics_.judge(*frame, std::move(objects), expected);
-    result.stages.push_back({"dynamics", stage.lap_ms()});
+    result.dynamics = dynamics_.judge(*frame, std::move(objects), prepared.objects, expected);
+    result.stages.push_back({"dynamics", prepared.objects_ms + stage.lap_ms()});
   }
-  Features features = extractor_.extract(frame->gray, frame->depth, result.dynamics.excluded);
-  result.stages.push_back({"features", stage.lap_ms()});
+  Features features =
+      extractor_.extract(std::move(prepared.corners), frame->depth, result.dynamics.excluded);
+  result.stages.push_back({"features", prepared.corners_ms + stage.lap_ms()});
   if (dynamics_.enabled()) {
     SiftedFeatures sifted = dynamics_.sift(*frame, std::move(features), result.dynamics, expected);
     features = std::move(sifted.features);
@@ -83,7 +103,7 @@ FrameResult System::process(const FramePtr& frame, FrameObjects objects, MaskOri
 
   result.tracked = track(*frame, std::move(features), origin);
   result.stages.push_back({"tracking", stage.lap_ms()});
-  result.pose_ms = total.lap_ms();
+  result.pose_ms = prepared.corners_ms + prepared.objects_ms + total.lap_ms();
 
   TrackedFrame& tracked = result.tracked;
   since_keyframe_.most_inliers = std::max(since_keyframe_.most_inliers, tracked.inliers);
@@ -285,7 +305,7 @@ RunResult System::finish() {
     if (world_of(session_, record) != world) continue;
     posed.push_back({T_world_frame(session_, record), view.view.get()});
   }
-  result.map = static_map(posed, camera_, cloud_config_);
+  result.map = static_map(posed, camera_, cloud_config_, threads_);
   return result;
 }
 
@@ -304,7 +324,7 @@ PointCloud System::cloud_with_poses(
   for (const ViewRecord& view : session_.views) {
     if (poses[view.frame]) posed.push_back({*poses[view.frame], view.view.get()});
   }
-  return static_map(posed, camera_, cloud_config_);
+  return static_map(posed, camera_, cloud_config_, threads_);
 }
 
 }  // namespace stillmap

@@ -14,6 +14,7 @@
 #include "stillmap/system/frame_result.hpp"
 #include "stillmap/system/job_ledger.hpp"
 #include "stillmap/system/loop_stage.hpp"
+#include "stillmap/system/prepared_frame.hpp"
 #include "stillmap/system/view_stage.hpp"
 #include "stillmap/system/worker.hpp"
 
@@ -37,7 +38,7 @@ struct RunResult {
 };
 
 struct SystemOptions {
-  int threads = 1;             ///< 2 or more: mapping, clouds and loops beside the caller
+  int threads = 1;  ///< 2 or more: mapping, clouds and loops beside the caller; the end on so many
   bool localize_only = false;  ///< the map stays as it is
 };
 
@@ -60,9 +61,18 @@ class System {
   /// frame. Throws Error when the session is of another camera or of another image pyramid.
   void load(Session session);
 
-  /// Tracks a frame. Frames have the camera's size. `objects`: what a network has found in it, if
-  /// there is one. Only with objects of its own may it become a key frame, begin a map or be seen
-  /// in the cloud.
+  /// The part of process() that needs nothing of other frames. May be called on any thread while
+  /// others are being processed. `objects`: what a network has found in it, if there is one.
+  [[nodiscard]] PreparedFrame prepare(const RgbdFrame& frame, const FrameObjects& objects) const;
+
+  /// Tracks a frame. Frames have the camera's size. `prepared`: what prepare() says of the same.
+  /// Only with objects of its own may it become a key frame, begin a map or be seen in the cloud.
+  FrameResult process(const FramePtr& frame,
+                      FrameObjects objects,
+                      PreparedFrame prepared,
+                      MaskOrigin origin = MaskOrigin::kOwn);
+
+  /// Both at once.
   FrameResult process(const FramePtr& frame,
                       FrameObjects objects = {},
                       MaskOrigin origin = MaskOrigin::kOwn);
@@ -112,6 +122,7 @@ class System {
   SystemConfig config_;
   CloudConfig cloud_config_;  // decided
   CameraModel camera_;
+  std::size_t threads_;
   bool localize_only_;
   DynamicsStage dynamics_;
   OrbExtractor extractor_;

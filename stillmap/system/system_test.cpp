@@ -4,7 +4,9 @@
 #include <set>
 
 #include <gtest/gtest.h>
+#include <opencv2/core.hpp>
 
+#include "stillmap/core/ahead.hpp"
 #include "stillmap/eval/ate.hpp"
 #include "stillmap/synth/detection_faults.hpp"
 #include "stillmap/synth/sequence.hpp"
@@ -310,6 +312,30 @@ TEST(System, PeopleDisturbThePoseOnlyWithoutDynamics) {
   const double full = error_among_people("full");
   EXPECT_LT(full, 0.02);
   EXPECT_GT(error_among_people("off"), 3 * full);
+}
+
+TEST(System, GivesTheSameBitsForFramesPreparedAheadOnAnotherThread) {
+  const CrowdedFrames& crowded = crowded_frames();
+  System plain({}, synthetic_camera(320, 240), {.threads = 1});
+  System hurried({}, synthetic_camera(320, 240), {.threads = 2});
+  std::size_t next = 0;
+  Ahead<PreparedFrame> ahead(
+      [&]() -> std::optional<PreparedFrame> {
+        if (next == crowded.frames.size()) return std::nullopt;
+        const std::size_t i = next++;
+        return hurried.prepare(*crowded.frames[i], crowded.objects[i]);
+      },
+      4);
+  for (std::size_t i = 0; i < crowded.frames.size(); ++i) {
+    const FrameResult a = plain.process(crowded.frames[i], crowded.objects[i]);
+    const FrameResult b =
+        hurried.process(crowded.frames[i], crowded.objects[i], ahead.next().value());
+    EXPECT_EQ(a.tracked.T_world_camera.matrix(), b.tracked.T_world_camera.matrix()) << i;
+    EXPECT_EQ(a.tracked.features->descriptors, b.tracked.features->descriptors) << i;
+    EXPECT_EQ(cv::norm(a.dynamics.excluded, b.dynamics.excluded, cv::NORM_INF), 0.0) << i;
+    EXPECT_GE(b.pose_ms, 0.0);
+  }
+  EXPECT_EQ(plain.finish().map.positions, hurried.finish().map.positions);
 }
 
 }  // namespace

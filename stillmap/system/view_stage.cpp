@@ -5,11 +5,19 @@
 
 namespace stillmap {
 
-ViewStage::ViewStage(const CloudConfig& config,
-                     const CameraModel& camera,
-                     int lag_frames,
-                     Worker* worker)
-    : config_(config), rays_(pixel_rays(camera)), lag_frames_(lag_frames), jobs_(worker) {}
+namespace {
+
+// Nobody asks for a view before the end: only that frames do not pile up must not be waited for
+// long.
+constexpr std::int64_t kLagFrames = 30;
+
+}  // namespace
+
+ViewStage::ViewStage(const CloudConfig& config, const CameraModel& camera, bool threaded)
+    : config_(config),
+      rays_(pixel_rays(camera)),
+      worker_(threaded ? std::make_unique<Worker>() : nullptr),
+      jobs_(worker_.get()) {}
 
 void ViewStage::add(Session& session, const Candidate& candidate, std::int64_t frame_number) {
   const auto record = static_cast<std::int64_t>(candidate.record);
@@ -23,7 +31,7 @@ void ViewStage::add(Session& session, const Candidate& candidate, std::int64_t f
   const DynamicMask mask = dynamics.judged.mask;
   const cv::Mat1b excluded = dynamics.excluded;
   const cv::Mat1b labels = label_image(frame->depth, dynamics);
-  jobs_.submit(frame_number + lag_frames_, [frame, mask, excluded, labels, index, this] {
+  jobs_.submit(frame_number + kLagFrames, [frame, mask, excluded, labels, index, this] {
     const NotStatic masks = not_static(mask, excluded);
     return FinishedView(
         index,

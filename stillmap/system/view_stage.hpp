@@ -16,9 +16,14 @@ namespace stillmap {
 /// Makes the dense map's views: of key frames and of some frames between them.
 class ViewStage {
  public:
-  /// `config` is decided. Views are made by the worker (inline without one) and are in the session
-  /// `lag_frames` later.
-  ViewStage(const CloudConfig& config, const CameraModel& camera, int lag_frames, Worker* worker);
+  /// `config` is decided. `threaded`: views are made on a thread of their own. They are in the
+  /// session some frames later.
+  ViewStage(const CloudConfig& config, const CameraModel& camera, bool threaded);
+
+  /// Views that have not been begun are dropped.
+  ~ViewStage() { worker_.reset(); }
+  ViewStage(const ViewStage&) = delete;
+  ViewStage& operator=(const ViewStage&) = delete;
 
   /// A recorded frame with masks of its own.
   struct Candidate {
@@ -39,8 +44,8 @@ class ViewStage {
 
   CloudConfig config_;
   cv::Mat2f rays_;
-  int lag_frames_;
   std::optional<std::int64_t> last_;  // record of the last view's frame, at first that before all
+  std::unique_ptr<Worker> worker_;
   JobLedger<FinishedView> jobs_;
 };
 
