@@ -12,6 +12,7 @@
 #include "stillmap/cloud/range_image.hpp"
 #include "stillmap/cloud/static_depth.hpp"
 #include "stillmap/cloud/static_view.hpp"
+#include "stillmap/cloud/view_choice.hpp"
 #include "stillmap/core/camera.hpp"
 #include "stillmap/core/fields.hpp"
 #include "stillmap/core/rgbd_frame.hpp"
@@ -25,6 +26,7 @@ struct CloudConfig {
   StaticDepthConfig depth;
   LocalCloudConfig local;
   int view_gap_frames = 6;
+  ViewChoiceConfig views;
   std::string free_space = "by_mode";
   RangeImageConfig range;
   FreeSpaceConfig free;
@@ -54,6 +56,7 @@ struct CloudConfig {
                   "frames",
                   0,
                   1000000});
+    visit.group("views", self.views);
     visit("free_space",
           self.free_space,
           FieldInfo{
@@ -65,11 +68,6 @@ struct CloudConfig {
     visit.group("range", self.range);
     visit.group("free", self.free);
   }
-};
-
-struct PosedView {
-  Eigen::Isometry3d T_world_camera;
-  const StaticView* view;  ///< not null; not owned
 };
 
 /// The map of the static world from views in the order of their time. `config` is decided.

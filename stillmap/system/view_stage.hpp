@@ -30,13 +30,14 @@ class ViewStage {
   void collect_due(Session& session, std::int64_t frame_number);
 
  private:
-  using FinishedView = std::pair<std::size_t, std::shared_ptr<const StaticView>>;
+  [[nodiscard]] bool is_news(const Session& session, const ViewRecord& made) const;
 
   CloudConfig config_;
+  CameraModel camera_;
   cv::Mat2f rays_;
   int lag_frames_;
   int since_last_ = 0;  // frames
-  JobLedger<FinishedView> jobs_;
+  JobLedger<ViewRecord> jobs_;
 };
 
 }  // namespace stillmap
