@@ -3,14 +3,14 @@
 
 #include <Eigen/Geometry>
 
+#include "stillmap/cloud/compact_cloud.hpp"
 #include "stillmap/cloud/range_image.hpp"
-#include "stillmap/core/point_cloud.hpp"
 
 namespace stillmap {
 
 /// What a frame keeps for the map, in its camera's coordinates.
 struct StaticView {
-  PointCloud cloud;
+  CompactCloud cloud;
   RangeImage range;
 };
 

@@ -13,11 +13,11 @@ constexpr std::size_t kHeldSamples = 256;  // of each other one
 
 /// Some of a view's points, in the world.
 std::vector<Eigen::Vector3f> samples(const PosedView& posed, std::size_t most) {
-  const std::vector<Eigen::Vector3f>& points = posed.view->cloud.positions;
+  const CompactCloud& points = posed.view->cloud;
   const std::size_t step = std::max<std::size_t>(1, points.size() / most);
   std::vector<Eigen::Vector3f> some;
   for (std::size_t i = step / 2; i < points.size(); i += step) {
-    some.push_back((posed.T_world_camera * points[i].cast<double>()).cast<float>());
+    some.push_back((posed.T_world_camera * points.position(i).cast<double>()).cast<float>());
   }
   return some;
 }

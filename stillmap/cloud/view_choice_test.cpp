@@ -38,7 +38,7 @@ StaticView view_of(const std::vector<Chair>& chairs, float wall_m = 3) {
     depth(chair.pixels).setTo(wall_m - 1);
     color.mat(chair.pixels).setTo(cv::Scalar(chair.color[0], chair.color[1], chair.color[2]));
   }
-  return {local_cloud(depth, color, pixel_rays(camera()), {}), range_image(depth, {}, {})};
+  return {compact(local_cloud(depth, color, pixel_rays(camera()), {})), range_image(depth, {}, {})};
 }
 
 /// Holds the views that are news to it.

@@ -31,7 +31,7 @@ StaticView static_view(const RgbdFrame& frame,
                        const NotStatic& not_static,
                        const cv::Mat1b& labels) {
   const cv::Mat1f depth = static_depth(frame.depth.mat, not_static.excluded, config.depth);
-  return {local_cloud(depth, frame.color, rays, config.local, labels),
+  return {compact(local_cloud(depth, frame.color, rays, config.local, labels)),
           range_image(frame.depth.mat, not_static, config.range)};
 }
 

@@ -86,7 +86,8 @@ FrameResult System::process(const FramePtr& frame, FrameObjects objects) {
   since_keyframe_.most_inliers = std::max(since_keyframe_.most_inliers, tracked.inliers);
   ++since_keyframe_.frames;
   if (tracked.status == TrackingStatus::kInitialized ||
-      (!localize_only_ && wants_keyframe(config_.keyframe, tracked, since_keyframe_, session_.map))) {
+      (!localize_only_ &&
+       wants_keyframe(config_.keyframe, tracked, since_keyframe_, session_.map))) {
     tracked.reference = insert_keyframe(*frame, tracked);
     result.is_keyframe = true;
   }

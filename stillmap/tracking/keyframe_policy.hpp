@@ -15,7 +15,7 @@ struct KeyframePolicyConfig {
   int min_near_untracked = 70;
   double near_depth_m = 3.0;
   int known_observers = 8;
-  double max_known_share = 0.55;
+  double max_known_share = 0.6;
   double min_known_tracked_ratio = 0.5;
 
   template <class Self, class Visitor>
