@@ -71,9 +71,10 @@ void assemble_global_cloud(benchmark::State& state) {
       local_cloud(wall(camera).depth.mat, wall(camera).color, pixel_rays(camera), {});
   local.positions.resize(std::min<std::size_t>(local.size(), 60000));
   local.colors.resize(local.size());
+  const CompactCloud view = compact(local);
   std::vector<PosedCloud> clouds;
   for (int i = 0; i < state.range(0); ++i) {
-    clouds.push_back({make_pose(so3_exp({0, 0.05 * i, 0}), {0.1 * i, 0, 0}), &local});
+    clouds.push_back({make_pose(so3_exp({0, 0.05 * i, 0}), {0.1 * i, 0, 0}), &view});
   }
   std::size_t points = 0;
   for (auto _ : state) {
@@ -100,7 +101,8 @@ BENCHMARK(make_range_image)->Unit(benchmark::kMillisecond);
 void check_free_space(benchmark::State& state) {
   const CameraModel camera = builtin_camera("tum_fr3");
   const RgbdFrame frame = wall(camera);
-  const PointCloud local = local_cloud(frame.depth.mat, frame.color, pixel_rays(camera), {});
+  const CompactCloud local =
+      compact(local_cloud(frame.depth.mat, frame.color, pixel_rays(camera), {}));
   const RangeImage range = range_image(frame.depth.mat, {}, {});
   std::vector<PosedCloud> clouds;
   std::vector<PosedRange> ranges;

@@ -72,7 +72,9 @@ Map make_map() {
 // As many points as the views of fr3 have, about.
 std::shared_ptr<const StaticView> make_view() {
   StaticView view;
-  view.cloud.positions.assign(19000, Eigen::Vector3f(0.1F, 0.2F, 1.5F));
+  view.cloud.origin = {-1, -1, 0.5F};
+  view.cloud.step = {1e-4F, 1e-4F, 1e-4F};
+  view.cloud.places.assign(19000, {11000, 12000, 10000});
   view.cloud.colors.assign(19000, Rgb{1, 2, 3});
   view.range = {2, 320, 240, std::vector<RangeCell>(std::size_t{320} * 240, {1.5F, false})};
   return std::make_shared<const StaticView>(std::move(view));

@@ -28,8 +28,8 @@ void keep_view(benchmark::State& state) {
   for (auto iteration : state) view = static_view(*frame, rays, config, masks, {});
   state.counters["points"] = static_cast<double>(view.cloud.size());
   state.counters["kilobytes"] =
-      1e-3 * static_cast<double>(view.cloud.size() * (sizeof(view.cloud.positions[0]) +
-                                                      sizeof(view.cloud.colors[0])) +
+      1e-3 * static_cast<double>(view.cloud.size() *
+                                     (sizeof(view.cloud.places[0]) + sizeof(view.cloud.colors[0])) +
                                  view.range.cells.size() * sizeof(RangeCell));
 }
 

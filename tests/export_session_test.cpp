@@ -42,7 +42,7 @@ class ExportSession : public Cli {
     return cloud;
   }
 
-  void add_camera(WorldId world, const Eigen::Isometry3d& T_world_camera, PointCloud cloud) {
+  void add_camera(WorldId world, const Eigen::Isometry3d& T_world_camera, const PointCloud& cloud) {
     Keyframe keyframe;
     keyframe.world = world;
     keyframe.T_world_camera = T_world_camera;
@@ -53,7 +53,7 @@ class ExportSession : public Cli {
     const KeyframeId id = session_.map.add_keyframe(std::move(keyframe));
     session_.frames.push_back({stamp, id, Eigen::Isometry3d::Identity()});
     session_.views.push_back(
-        {number, std::make_shared<const StaticView>(StaticView{std::move(cloud), {}})});
+        {number, std::make_shared<const StaticView>(StaticView{compact(cloud), {}})});
   }
 
   void expect_refused(const std::string& arguments, const std::string& part) const {

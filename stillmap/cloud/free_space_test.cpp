@@ -50,7 +50,7 @@ class Scene {
     moving(masked).setTo(1);
     cv::Mat1f still = depth.clone();
     still.setTo(0, moving);
-    clouds_.push_back(local_cloud(still, color, pixel_rays(camera()), {}));
+    clouds_.push_back(compact(local_cloud(still, color, pixel_rays(camera()), {})));
     ranges_.push_back(range_image(depth, {moving, moving}, {}));
   }
 
@@ -68,7 +68,7 @@ class Scene {
   }
 
  private:
-  std::vector<PointCloud> clouds_;
+  std::vector<CompactCloud> clouds_;
   std::vector<RangeImage> ranges_;
 };
 

@@ -26,7 +26,7 @@ double place(const Eigen::Vector3f& p_world, double voxel_size_m) {
 }
 
 Eigen::Vector3f to_world(const PosedCloud& posed, std::size_t i) {
-  return (posed.T_world_camera * posed.cloud->positions[i].cast<double>()).cast<float>();
+  return (posed.T_world_camera * posed.cloud->position(i).cast<double>()).cast<float>();
 }
 
 /// Slices with about as many points each. What lies nowhere, for want of numbers, is in none.
@@ -55,7 +55,7 @@ std::vector<Slice> slices(std::span<const PosedCloud> clouds,
 PointCloud cloud_in(const Slice& slice, std::span<const PosedCloud> clouds, double voxel_size_m) {
   VoxelGrid grid(voxel_size_m);
   for (const PosedCloud& posed : clouds) {
-    const PointCloud& cloud = *posed.cloud;
+    const CompactCloud& cloud = *posed.cloud;
     for (std::size_t i = 0; i < cloud.size(); ++i) {
       const Eigen::Vector3f p_world = to_world(posed, i);
       if (!slice.contains(place(p_world, voxel_size_m))) continue;
@@ -83,7 +83,7 @@ PointCloud global_cloud(std::span<const PosedCloud> clouds,
   STILLMAP_CHECK(threads > 0);
   for (const PosedCloud& posed : clouds) {
     STILLMAP_CHECK(posed.cloud != nullptr);
-    const PointCloud& cloud = *posed.cloud;
+    const CompactCloud& cloud = *posed.cloud;
     STILLMAP_CHECK(cloud.colors.size() == cloud.size());
     STILLMAP_CHECK(cloud.labels.empty() || cloud.labels.size() == cloud.size());
   }

@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include "stillmap/cloud/compact_cloud.hpp"
 #include "stillmap/core/point_cloud.hpp"
 
 namespace stillmap {
@@ -13,7 +14,7 @@ namespace stillmap {
 /// A view's cloud (see local_cloud) and where its camera is.
 struct PosedCloud {
   Eigen::Isometry3d T_world_camera;
-  const PointCloud* cloud;  ///< not null; not owned
+  const CompactCloud* cloud;  ///< not null; not owned
 };
 
 /// The union of the clouds in world coordinates (Fan 2020, Eq. (1)), thinned to one point a voxel

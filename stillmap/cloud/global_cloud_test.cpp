@@ -14,13 +14,13 @@
 namespace stillmap {
 namespace {
 
-PointCloud seen_from(const Eigen::Isometry3d& T_world_keyframe, const PointCloud& world) {
+CompactCloud seen_from(const Eigen::Isometry3d& T_world_keyframe, const PointCloud& world) {
   PointCloud cloud = world;
   const Eigen::Isometry3d T_keyframe_world = T_world_keyframe.inverse();
   for (Eigen::Vector3f& p : cloud.positions) {
     p = (T_keyframe_world * p.cast<double>()).cast<float>();
   }
-  return cloud;
+  return compact(cloud);
 }
 
 TEST(GlobalCloud, AppliesThePose) {
@@ -30,7 +30,8 @@ TEST(GlobalCloud, AppliesThePose) {
   local.positions = {{1, 2, 3}, {0.5F, 0, 0}};
   local.colors = {{1, 2, 3}, {4, 5, 6}};
   local.labels = {8, 0};
-  const std::vector<PosedCloud> clouds = {{T, &local}};
+  const CompactCloud view = compact(local);
+  const std::vector<PosedCloud> clouds = {{T, &view}};
   const PointCloud cloud = global_cloud(clouds, 0.01);
   ASSERT_EQ(cloud.size(), 2U);
   EXPECT_LT((cloud.positions[0] - Eigen::Vector3f(8, 21, 33)).norm(), 1e-5F);
@@ -50,13 +51,13 @@ TEST(GlobalCloud, ViewsOfOneSurfaceFuse) {
   }
   const Eigen::Isometry3d T_a = make_pose(so3_exp({0.3, 0.2, -0.5}), {1, -2, 0.5});
   const Eigen::Isometry3d T_b = make_pose(so3_exp({-1.0, 2.0, 0.1}), {-3, 0.1, 4});
-  const PointCloud a = seen_from(T_a, world);
-  const PointCloud b = seen_from(T_b, world);
+  const CompactCloud a = seen_from(T_a, world);
+  const CompactCloud b = seen_from(T_b, world);
   const std::vector<PosedCloud> clouds = {{T_a, &a}, {T_b, &b}};
   const PointCloud fused = global_cloud(clouds, 0.1);
   ASSERT_EQ(fused.size(), world.size());
   for (std::size_t i = 0; i < fused.size(); ++i) {
-    ASSERT_LT((fused.positions[i] - world.positions[i]).norm(), 2e-6F);
+    ASSERT_LT((fused.positions[i] - world.positions[i]).norm(), 4e-5F);
   }
   EXPECT_EQ(fused.colors, world.colors);
 }
@@ -64,13 +65,14 @@ TEST(GlobalCloud, ViewsOfOneSurfaceFuse) {
 TEST(GlobalCloud, AgreesWithBruteForceOverSeveralClouds) {
   const std::vector<Eigen::Isometry3d> poses = {make_pose(so3_exp({0.3, 0.2, -0.5}), {1, 0, 0}),
                                                 make_pose(so3_exp({1, -1, 0}), {0, 0.5, 0})};
-  const std::vector<PointCloud> local = {random_cloud(20000, 1.0, 7), random_cloud(30000, 1.5, 8)};
+  const std::vector<CompactCloud> local = {compact(random_cloud(20000, 1.0, 7)),
+                                           compact(random_cloud(30000, 1.5, 8))};
   PointCloud all;
   std::vector<PosedCloud> clouds;
   for (std::size_t k = 0; k < poses.size(); ++k) {
     clouds.push_back({poses[k], &local[k]});
     for (std::size_t i = 0; i < local[k].size(); ++i) {
-      all.positions.push_back((poses[k] * local[k].positions[i].cast<double>()).cast<float>());
+      all.positions.push_back((poses[k] * local[k].position(i).cast<double>()).cast<float>());
       all.colors.push_back(local[k].colors[i]);
       all.labels.push_back(local[k].labels[i]);
     }
@@ -87,18 +89,19 @@ TEST(GlobalCloud, AgreesWithBruteForceOverSeveralClouds) {
 }
 
 TEST(GlobalCloud, GivesTheSameBitsWithAnyNumberOfThreads) {
-  std::vector<PointCloud> local = {random_cloud(20000, 1.0, 7), random_cloud(30000, 1.5, 8)};
-  local[0].positions[5].x() = std::numeric_limits<float>::quiet_NaN();
-  local[0].positions[7].y() = std::numeric_limits<float>::infinity();
+  PointCloud labelled = random_cloud(30000, 1.5, 8);
   // Labels on one side alone, so that only some of the threads meet any.
-  for (std::size_t i = 0; i < local[1].size(); ++i) {
-    if (local[1].positions[i].x() < 0.5F) local[1].labels[i] = 0;
+  for (std::size_t i = 0; i < labelled.size(); ++i) {
+    if (labelled.positions[i].x() < 0.5F) labelled.labels[i] = 0;
   }
+  std::vector<CompactCloud> local = {
+      compact(random_cloud(20000, 1.0, 7)), compact(labelled), compact(random_cloud(10, 1.0, 9))};
+  local[2].origin = {std::numeric_limits<float>::quiet_NaN(), 0, 0};  // lies nowhere
   const Eigen::Isometry3d T = make_pose(so3_exp({0.1, 0, 0}), {0.3, 0.2, 0.1});
   local[0].labels.clear();
   for (const double voxel_m : {0.01, 0.2, 5.0}) {
-    const std::vector<PosedCloud> clouds = {{Eigen::Isometry3d::Identity(), &local[0]},
-                                            {T, &local[1]}};
+    const std::vector<PosedCloud> clouds = {
+        {Eigen::Isometry3d::Identity(), &local[0]}, {T, &local[1]}, {T, &local[2]}};
     const PointCloud one = global_cloud(clouds, voxel_m);
     EXPECT_FALSE(one.empty());
     for (const std::size_t threads : {2U, 3U, 8U}) {
@@ -111,7 +114,7 @@ TEST(GlobalCloud, GivesTheSameBitsWithAnyNumberOfThreads) {
 }
 
 TEST(GlobalCloud, EmptyWithoutClouds) {
-  const PointCloud none;
+  const CompactCloud none;
   const std::vector<PosedCloud> clouds = {{Eigen::Isometry3d::Identity(), &none}};
   EXPECT_TRUE(global_cloud({}, 0.01).empty());
   EXPECT_TRUE(global_cloud(clouds, 0.01, 3).empty());
@@ -119,7 +122,7 @@ TEST(GlobalCloud, EmptyWithoutClouds) {
 }
 
 TEST(GlobalCloud, RefusesCloudsThatAreNone) {
-  PointCloud torn = random_cloud(3, 1.0, 9);
+  CompactCloud torn = compact(random_cloud(3, 1.0, 9));
   torn.colors.pop_back();
   const std::vector<PosedCloud> clouds = {{Eigen::Isometry3d::Identity(), &torn}};
   const std::vector<PosedCloud> null = {{Eigen::Isometry3d::Identity(), nullptr}};

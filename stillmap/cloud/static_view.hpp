@@ -1,15 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Geometry>
+
+#include "stillmap/cloud/compact_cloud.hpp"
 #include "stillmap/cloud/range_image.hpp"
-#include "stillmap/core/point_cloud.hpp"
 
 namespace stillmap {
 
 /// What a frame keeps for the map, in its camera's coordinates.
 struct StaticView {
-  PointCloud cloud;
-  RangeImage range;  ///< empty when free space is not asked for
+  CompactCloud cloud;
+  RangeImage range;
+};
+
+struct PosedView {
+  Eigen::Isometry3d T_world_camera;
+  const StaticView* view;  ///< not null; not owned
 };
 
 }  // namespace stillmap

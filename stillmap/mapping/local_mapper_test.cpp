@@ -188,7 +188,8 @@ class SmallSlam {
     if (k > 0 && has_pose(tracked)) count(tracked);
     since_keyframe_.most_inliers = std::max(since_keyframe_.most_inliers, tracked.inliers);
     ++since_keyframe_.frames;
-    if (k == 0 || wants_keyframe({}, tracked, since_keyframe_)) insert(k, tracked, seen);
+    if (k == 0 || wants_keyframe({}, tracked, since_keyframe_, simulated_.map))
+      insert(k, tracked, seen);
     return tracked;
   }
 

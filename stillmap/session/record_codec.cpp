@@ -26,25 +26,36 @@ constexpr std::array kCameraNumbers = {&CameraModel::fx,
 static_assert(sizeof(RangeCell) == sizeof(std::uint16_t) &&
               std::is_trivially_copyable_v<RangeCell>);
 
-void put(ByteWriter& out, const PointCloud& cloud) {
-  out.count(cloud.size());
-  out.flag(!cloud.labels.empty());
-  out.flag(!cloud.normals.empty());
-  out.array<float>(cloud.positions);
-  out.array<std::uint8_t>(cloud.colors);
-  out.array<std::uint8_t>(cloud.labels);
-  out.array<float>(cloud.normals);
+void put(ByteWriter& out, const Eigen::Vector3f& v) {
+  for (int i = 0; i < 3; ++i) out.number(v[i]);
 }
 
-PointCloud take_cloud(ByteReader& in) {
+Eigen::Vector3f take_vector(ByteReader& in) {
+  Eigen::Vector3f v;
+  for (int i = 0; i < 3; ++i) v[i] = in.number<float>();
+  return v;
+}
+
+void put(ByteWriter& out, const CompactCloud& cloud) {
+  out.count(cloud.size());
+  out.flag(!cloud.labels.empty());
+  put(out, cloud.origin);
+  put(out, cloud.step);
+  out.array<std::uint16_t>(cloud.places);
+  out.array<std::uint8_t>(cloud.colors);
+  out.array<std::uint8_t>(cloud.labels);
+}
+
+CompactCloud take_cloud(ByteReader& in) {
   const auto size = static_cast<std::size_t>(in.number<std::uint32_t>());
-  const bool with_labels = in.flag(), with_normals = in.flag();
-  if (size == 0 && (with_labels || with_normals)) throw Error("{}: invalid flag", in.place());
-  PointCloud cloud;
-  cloud.positions = in.array<float, Eigen::Vector3f>(size);
+  const bool with_labels = in.flag();
+  if (size == 0 && with_labels) throw Error("{}: invalid flag", in.place());
+  CompactCloud cloud;
+  cloud.origin = take_vector(in);
+  cloud.step = take_vector(in);
+  cloud.places = in.array<std::uint16_t, std::array<std::uint16_t, 3>>(size);
   cloud.colors = in.array<std::uint8_t, Rgb>(size);
   cloud.labels = in.array<std::uint8_t, std::uint8_t>(with_labels ? size : 0);
-  cloud.normals = in.array<float, Eigen::Vector3f>(with_normals ? size : 0);
   return cloud;
 }
 

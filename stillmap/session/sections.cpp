@@ -34,13 +34,21 @@ void check_head(const ByteSource& source, const std::string& file) {
   }
   if (version > kSessionVersion) {
     throw Error(
-        "{}: written by a newer stillmap (format {}; this one reads up to {}): install that "
-        "version or a later one",
+        "{}: written by a newer stillmap (format {}; this one reads {}): install that version or a "
+        "later one",
         file,
         version,
         kSessionVersion);
   }
   if (version == 0) throw Error("{}: of format 0, which there never was", file);
+  if (version < kSessionVersion) {
+    throw Error(
+        "{}: written by an older stillmap (format {}; this one reads {}): make it again by a run "
+        "with this version",
+        file,
+        version,
+        kSessionVersion);
+  }
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace stillmap {
 // has the layout.
 
 inline constexpr std::string_view kSessionMagic = "stillmap";
-inline constexpr std::uint32_t kSessionVersion = 1;
+inline constexpr std::uint32_t kSessionVersion = 2;
 inline constexpr std::size_t kSessionHeadSize = 16;   ///< magic, version, checksum
 inline constexpr std::size_t kSectionHeadSize = 12;   ///< tag, size of the content
 inline constexpr std::size_t kSectionExtraSize = 16;  ///< that, and the checksum behind it

@@ -20,22 +20,19 @@ bool is_known(const MapParts& map, KeyframeId id) {
   return dropped != map.dropped_keyframes.end() && dropped->first == id;
 }
 
-bool are_finite(const std::vector<Eigen::Vector3f>& points, float greatest) {
-  return std::ranges::all_of(points, [&](const Eigen::Vector3f& p) {
-    return std::abs(p.x()) <= greatest && std::abs(p.y()) <= greatest &&
-           std::abs(p.z()) <= greatest;
-  });
-}
-
 // Null when there is nothing wrong with it.
-const char* cloud_problem(const PointCloud& cloud) {
-  const std::size_t size = cloud.positions.size();
-  if (cloud.colors.size() != size || (!cloud.labels.empty() && cloud.labels.size() != size) ||
-      (!cloud.normals.empty() && cloud.normals.size() != size)) {
+const char* cloud_problem(const CompactCloud& cloud) {
+  const std::size_t size = cloud.size();
+  if (cloud.colors.size() != size || (!cloud.labels.empty() && cloud.labels.size() != size)) {
     return "arrays of its points that differ in length";
   }
-  if (!are_finite(cloud.positions, static_cast<float>(kMaxCoordinate_m))) return "a point";
-  if (!are_finite(cloud.normals, 1.001F)) return "a normal";
+  constexpr auto kGreatest = static_cast<float>(kMaxCoordinate_m);
+  for (int axis = 0; axis < 3; ++axis) {
+    const float step = cloud.step[axis];
+    const bool is_inside = std::abs(cloud.origin[axis]) <= kGreatest && step >= 0 &&
+                           std::abs(cloud.origin[axis] + 65535 * step) <= kGreatest;
+    if (!is_inside) return "where its points are";
+  }
   return nullptr;
 }
 

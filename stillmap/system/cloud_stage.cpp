@@ -31,10 +31,8 @@ StaticView static_view(const RgbdFrame& frame,
                        const NotStatic& not_static,
                        const cv::Mat1b& labels) {
   const cv::Mat1f depth = static_depth(frame.depth.mat, not_static.excluded, config.depth);
-  StaticView view{local_cloud(depth, frame.color, rays, config.local, labels), {}};
-  if (config.free_space == "on")
-    view.range = range_image(frame.depth.mat, not_static, config.range);
-  return view;
+  return {compact(local_cloud(depth, frame.color, rays, config.local, labels)),
+          range_image(frame.depth.mat, not_static, config.range)};
 }
 
 PointCloud static_map(std::span<const PosedView> views,

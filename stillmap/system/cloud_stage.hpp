@@ -13,6 +13,7 @@
 #include "stillmap/cloud/range_image.hpp"
 #include "stillmap/cloud/static_depth.hpp"
 #include "stillmap/cloud/static_view.hpp"
+#include "stillmap/cloud/view_choice.hpp"
 #include "stillmap/core/camera.hpp"
 #include "stillmap/core/fields.hpp"
 #include "stillmap/core/rgbd_frame.hpp"
@@ -26,6 +27,7 @@ struct CloudConfig {
   StaticDepthConfig depth;
   LocalCloudConfig local;
   int view_gap_frames = 6;
+  ViewChoiceConfig views;
   std::string free_space = "by_mode";
   RangeImageConfig range;
   FreeSpaceConfig free;
@@ -55,6 +57,7 @@ struct CloudConfig {
                   "frames",
                   0,
                   1000000});
+    visit.group("views", self.views);
     visit("free_space",
           self.free_space,
           FieldInfo{
@@ -66,11 +69,6 @@ struct CloudConfig {
     visit.group("range", self.range);
     visit.group("free", self.free);
   }
-};
-
-struct PosedView {
-  Eigen::Isometry3d T_world_camera;
-  const StaticView* view;  ///< not null; not owned
 };
 
 /// The map of the static world from views in the order of their time. `config` is decided. The same

@@ -25,7 +25,8 @@ Session two_worlds(const std::string& config_yaml) {
     session.frames.push_back(
         {{1.0 * k, ""}, KeyframeId(k), Eigen::Isometry3d(Eigen::Translation3d(0, 0.5, 0))});
     StaticView view;
-    view.cloud.positions = {{0, 0, 1}};
+    view.cloud.origin = {0, 0, 1};
+    view.cloud.places = {{0, 0, 0}};
     view.cloud.colors = {{1, 2, 3}};
     session.views.push_back({k, std::make_shared<const StaticView>(view)});
   }

@@ -110,7 +110,7 @@ FrameResult System::process(const FramePtr& frame,
   ++since_keyframe_.frames;
   if (tracked.status == TrackingStatus::kInitialized ||
       (origin == MaskOrigin::kOwn && !localize_only_ &&
-       wants_keyframe(config_.keyframe, tracked, since_keyframe_))) {
+       wants_keyframe(config_.keyframe, tracked, since_keyframe_, session_.map))) {
     tracked.reference = insert_keyframe(*frame, tracked);
     tracker_.set_reference(tracked.reference, session_.map);
     result.is_keyframe = true;
@@ -231,9 +231,9 @@ void System::take_objects(FrameObjects objects) {
     dynamics_.learn_motions(frame, T, dynamics);
   }
   const TrackedFrame tracked = off_masks(awaiting, dynamics.excluded);
-  const bool is_keyframe = wants_keyframe(config_.keyframe, tracked, since_keyframe_);
+  const bool is_keyframe = wants_keyframe(config_.keyframe, tracked, since_keyframe_, session_.map);
   if (is_keyframe) record = {frame.stamp, insert_keyframe(frame, tracked)};
-  views_.add(session_, {awaiting.frame, dynamics, awaiting.record, is_keyframe}, frame_number_);
+  views_.add({awaiting.frame, dynamics, awaiting.record, is_keyframe}, frame_number_);
 }
 
 // The frame as it would be had it come with these masks, its landmarks as the map has them now.
@@ -275,7 +275,7 @@ void System::remember(const FramePtr& frame, FrameResult& result, MaskOrigin ori
        session_.map.T_world_keyframe(tracked.reference).inverse() * tracked.T_world_camera});
   const std::size_t record = session_.frames.size() - 1;
   if (!localize_only_ && origin == MaskOrigin::kOwn) {
-    views_.add(session_, {frame, result.dynamics, record, result.is_keyframe}, frame_number_);
+    views_.add({frame, result.dynamics, record, result.is_keyframe}, frame_number_);
   }
   if (!localize_only_ && origin == MaskOrigin::kAwaited) {
     awaiting_.push_back({frame, tracked, record});

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stillmap/system/view_stage.hpp"
 
+#include <vector>
+
+#include "stillmap/session/session_map.hpp"
 #include "stillmap/system/label_image.hpp"
 
 namespace stillmap {
@@ -15,17 +18,17 @@ constexpr std::int64_t kLagFrames = 30;
 
 ViewStage::ViewStage(const CloudConfig& config, const CameraModel& camera, bool threaded)
     : config_(config),
+      camera_(camera),
       rays_(pixel_rays(camera)),
       worker_(threaded ? std::make_unique<Worker>() : nullptr),
       jobs_(worker_.get()) {}
 
-void ViewStage::add(Session& session, const Candidate& candidate, std::int64_t frame_number) {
+void ViewStage::add(const Candidate& candidate, std::int64_t frame_number) {
   const auto record = static_cast<std::int64_t>(candidate.record);
   if (!last_) last_ = record - 1;
   if (!candidate.is_keyframe && !is_due(record)) return;
   last_ = record;
-  const std::size_t index = session.views.size();
-  session.views.push_back({static_cast<std::uint32_t>(candidate.record), nullptr});
+  const auto index = static_cast<std::uint32_t>(candidate.record);
   const FramePtr frame = candidate.frame;
   const FrameDynamics& dynamics = candidate.dynamics;
   const DynamicMask mask = dynamics.judged.mask;
@@ -33,9 +36,9 @@ void ViewStage::add(Session& session, const Candidate& candidate, std::int64_t f
   const cv::Mat1b labels = label_image(frame->depth, dynamics);
   jobs_.submit(frame_number + kLagFrames, [frame, mask, excluded, labels, index, this] {
     const NotStatic masks = not_static(mask, excluded);
-    return FinishedView(
+    return ViewRecord{
         index,
-        std::make_shared<const StaticView>(static_view(*frame, rays_, config_, masks, labels)));
+        std::make_shared<const StaticView>(static_view(*frame, rays_, config_, masks, labels))};
   });
 }
 
@@ -44,7 +47,23 @@ bool ViewStage::is_due(std::int64_t record) const {
 }
 
 void ViewStage::collect_due(Session& session, std::int64_t frame_number) {
-  for (auto& [i, view] : jobs_.collect_due(frame_number)) session.views[i].view = std::move(view);
+  for (ViewRecord& made : jobs_.collect_due(frame_number)) {
+    if (is_news(session, made)) session.views.push_back(std::move(made));
+  }
+}
+
+bool ViewStage::is_news(const Session& session, const ViewRecord& made) const {
+  if (config_.views.enough == 0) return true;
+  const auto posed = [&](const ViewRecord& record) {
+    return PosedView{T_world_frame(session, session.frames[record.frame]), record.view.get()};
+  };
+  const WorldId world = world_of(session, session.frames[made.frame]);
+  std::vector<PosedView> held;
+  for (const ViewRecord& record : session.views) {
+    if (world_of(session, session.frames[record.frame]) == world) held.push_back(posed(record));
+  }
+  const ViewNews news = news_of(posed(made), held, camera_, config_.views, config_.free);
+  return joins(news, config_.views);
 }
 
 }  // namespace stillmap

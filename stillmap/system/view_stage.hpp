@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <utility>
 
 #include "stillmap/session/session.hpp"
 #include "stillmap/system/cloud_stage.hpp"
@@ -33,20 +32,20 @@ class ViewStage {
     bool is_keyframe;
   };
   /// Makes its view if its turn has come. To be called in the order of the records.
-  void add(Session& session, const Candidate& candidate, std::int64_t frame_number);
+  void add(const Candidate& candidate, std::int64_t frame_number);
 
   void collect_due(Session& session, std::int64_t frame_number);
 
  private:
   [[nodiscard]] bool is_due(std::int64_t record) const;
-
-  using FinishedView = std::pair<std::size_t, std::shared_ptr<const StaticView>>;
+  [[nodiscard]] bool is_news(const Session& session, const ViewRecord& made) const;
 
   CloudConfig config_;
+  CameraModel camera_;
   cv::Mat2f rays_;
   std::optional<std::int64_t> last_;  // record of the last view's frame, at first that before all
   std::unique_ptr<Worker> worker_;
-  JobLedger<FinishedView> jobs_;
+  JobLedger<ViewRecord> jobs_;
 };
 
 }  // namespace stillmap

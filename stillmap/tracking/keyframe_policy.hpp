@@ -2,6 +2,7 @@
 #pragma once
 
 #include "stillmap/core/fields.hpp"
+#include "stillmap/map/map.hpp"
 #include "stillmap/tracking/tracked_frame.hpp"
 
 namespace stillmap {
@@ -13,6 +14,9 @@ struct KeyframePolicyConfig {
   int min_near_tracked = 100;
   int min_near_untracked = 70;
   double near_depth_m = 3.0;
+  int known_observers = 8;
+  double max_known_share = 0.6;
+  double min_known_tracked_ratio = 0.5;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -36,6 +40,19 @@ struct KeyframePolicyConfig {
           self.min_near_untracked,
           FieldInfo{"and as many near features that could become landmarks", "", 0, 10000});
     visit("near_depth_m", self.near_depth_m, FieldInfo{"what counts as near", "m", 0.1, 100});
+    visit("known_observers",
+          self.known_observers,
+          FieldInfo{"a landmark is well known when so many key frames see it", "", 1, 1000});
+    visit("max_known_share",
+          self.max_known_share,
+          FieldInfo{"a place is known where more than this share of a frame's landmarks is: no key "
+                    "frame is due there for the longest gap, or for min_tracked_ratio; 1: none is",
+                    "",
+                    0,
+                    1});
+    visit("min_known_tracked_ratio",
+          self.min_known_tracked_ratio,
+          FieldInfo{"but for this share instead of that", "", 0, 1});
   }
 };
 
@@ -49,6 +66,7 @@ struct KeyframeAge {
 /// busy the machine is.
 [[nodiscard]] bool wants_keyframe(const KeyframePolicyConfig& config,
                                   const TrackedFrame& frame,
-                                  const KeyframeAge& since_keyframe);
+                                  const KeyframeAge& since_keyframe,
+                                  const Map& map);
 
 }  // namespace stillmap

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+// What grows where nothing new is seen: a rendered room gone through there and back.
+#include <algorithm>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "stillmap/eval/ate.hpp"
+#include "stillmap/eval/map_quality.hpp"
+#include "stillmap/synth/sequence.hpp"
+#include "stillmap/system/system.hpp"
+
+namespace stillmap {
+namespace {
+
+constexpr std::uint32_t kFrames = 60;  // one way
+
+const SyntheticSequence& room() {
+  static const SyntheticSequence kRoom = [] {
+    SyntheticOptions options;
+    options.camera = synthetic_camera(320, 240);
+    options.frames = kFrames;
+    return SyntheticSequence(options);
+  }();
+  return kRoom;
+}
+
+const std::vector<SyntheticFrame>& rendered() {
+  static const std::vector<SyntheticFrame> kRendered = [] {
+    std::vector<SyntheticFrame> frames;
+    for (std::uint32_t k = 0; k < kFrames; ++k) frames.push_back(room().render(FrameId(k)));
+    return frames;
+  }();
+  return kRendered;
+}
+
+std::uint32_t at_step(std::uint32_t step) {
+  const std::uint32_t at = step % (2 * (kFrames - 1));
+  return at < kFrames ? at : 2 * (kFrames - 1) - at;
+}
+
+/// The surfaces that the camera has seen, where they are from the first camera.
+MapTruth truth() {
+  const cv::Mat2f rays = pixel_rays(room().camera());
+  PointCloud surface;
+  for (std::uint32_t k = 0; k < kFrames; k += 5) {
+    const Eigen::Isometry3d T = room().pose(FrameId(0)).inverse() * room().pose(FrameId(k));
+    const cv::Mat1f& depth = rendered()[k].truth.depth.mat;
+    for (int v = 0; v < depth.rows; ++v) {
+      for (int u = 0; u < depth.cols; ++u) {
+        const double z = depth(v, u);
+        if (!(z > 0 && z < 4)) continue;
+        const Eigen::Vector3d p(rays(v, u)[0] * z, rays(v, u)[1] * z, z);
+        surface.positions.push_back((T * p).cast<float>());
+        surface.colors.push_back({});
+      }
+    }
+  }
+  return {surface, {}};
+}
+
+struct Outcome {
+  int inserted = 0;  ///< key frames, also those culled since
+  std::size_t views = 0;
+  double ate_m = 0;
+  MapQuality map;
+};
+
+Outcome go(std::uint32_t ways, const SystemConfig& config) {
+  System system(config, room().camera(), {.threads = 1});
+  Outcome outcome;
+  Trajectory ground_truth;
+  for (std::uint32_t step = 0; step < ways * kFrames; ++step) {
+    const std::uint32_t k = at_step(step);
+    RgbdFrame frame = *rendered()[k].frame;
+    frame.id = FrameId(step);
+    frame.stamp = {1000 + step / 30.0, fmt::format("{:.6f}", 1000 + step / 30.0)};
+    ground_truth.push_back({frame.stamp, room().pose(FrameId(k))});
+    const FrameResult result = system.process(std::make_shared<const RgbdFrame>(std::move(frame)));
+    outcome.inserted += result.is_keyframe ? 1 : 0;
+  }
+  const RunResult result = system.finish();
+  const std::optional<AteResult> ate = absolute_trajectory_error(ground_truth, result.trajectory);
+  outcome.ate_m = ate && result.trajectory.size() == ways * kFrames ? ate->translation_m.rmse : 1;
+  static const MapTruth kTruth = truth();
+  outcome.map = map_quality(result.map, kTruth);
+  outcome.views = system.take_session().views.size();
+  fmt::print("{} ways: {} key frames inserted, {} views, ATE {:.4f} m, sa {:.4f}, {:.4f} m\n",
+             ways,
+             outcome.inserted,
+             outcome.views,
+             outcome.ate_m,
+             outcome.map.sa,
+             outcome.map.accuracy_m.value_or(1));
+  return outcome;
+}
+
+SystemConfig settings() {
+  SystemConfig config;
+  config.dynamics.mode = "full";
+  config.cloud.views.enough = 8;  // a short sequence
+  return config;
+}
+
+const Outcome& early() {
+  static const Outcome kEarly = go(4, settings());
+  return kEarly;
+}
+
+const Outcome& late() {
+  static const Outcome kLate = go(10, settings());
+  return kLate;
+}
+
+TEST(Growth, ViewsStayAsManyWhereNothingNewIsSeen) {
+  EXPECT_LE(late().views, early().views + 12);
+  SystemConfig all = settings();
+  all.cloud.views.enough = 0;
+  const Outcome with_all = go(10, all);
+  EXPECT_GT(with_all.views, early().views + 60);
+  // The map is as good without the others.
+  EXPECT_GT(late().map.sa, with_all.map.sa - 0.002);
+  EXPECT_LT(*late().map.accuracy_m, 1.05 * *with_all.map.accuracy_m);
+}
+
+TEST(Growth, KeyFramesDoNotComeOnlyToGoAgain) {
+  SystemConfig always = settings();
+  always.keyframe.max_known_share = 1;
+  const Outcome with_all = go(10, always);
+  EXPECT_GT(with_all.inserted - early().inserted, 2 * (late().inserted - early().inserted));
+  EXPECT_LT(late().ate_m, 1.1 * with_all.ate_m);
+}
+
+}  // namespace
+}  // namespace stillmap
