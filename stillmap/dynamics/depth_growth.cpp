@@ -6,10 +6,125 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
+
+#include "stillmap/core/vector_clones.hpp"
 
 namespace stillmap {
 namespace {
+
+constexpr float kAny = std::numeric_limits<float>::infinity();
+constexpr float kNobody = -1.0F;
+
+/// Two rows of an image, from where cells of 2x2 pixels begin to the image's border.
+struct PixelRows {
+  const float *depth0, *depth1;
+  const std::uint8_t *ids0, *ids1;
+  int size;
+};
+
+/// The pixel right of a cell's first one; there is none beyond the border of an image of odd width.
+std::size_t right_of(const PixelRows& rows, std::size_t cell) {
+  return std::min(2 * cell + 1, static_cast<std::size_t>(rows.size) - 1);
+}
+
+float first_known(float a, float b, float c, float d) {
+  const float last = c > 0 ? c : std::max(d, 0.0F);
+  const float later = b > 0 ? b : last;
+  return a > 0 ? a : later;
+}
+
+// What follows is without branches, so that it runs on vectors.
+
+STILLMAP_VECTOR_CLONES
+void first_depths(const PixelRows& rows, std::size_t cells, float* __restrict depth) {
+  const float *upper = rows.depth0, *lower = rows.depth1;
+  for (std::size_t c = 0; c + 1 < cells; ++c) {
+    depth[c] = first_known(upper[2 * c], lower[2 * c + 1], upper[2 * c + 1], lower[2 * c]);
+  }
+  const std::size_t x = 2 * (cells - 1), x1 = right_of(rows, cells - 1);
+  depth[cells - 1] = first_known(upper[x], lower[x1], upper[x1], lower[x]);
+}
+
+/// Whether one of a cell's pixels has the id.
+STILLMAP_VECTOR_CLONES
+void find_ids(const PixelRows& rows,
+              std::uint8_t id,
+              std::size_t cells,
+              std::uint8_t* __restrict found) {
+  const std::uint8_t *upper = rows.ids0, *lower = rows.ids1;
+  for (std::size_t c = 0; c + 1 < cells; ++c) {
+    const bool left = (upper[2 * c] == id) | (lower[2 * c] == id);
+    const bool right = (upper[2 * c + 1] == id) | (lower[2 * c + 1] == id);
+    found[c] = left | right ? 1 : 0;
+  }
+  const std::size_t x = 2 * (cells - 1), x1 = right_of(rows, cells - 1);
+  const bool last = upper[x] == id || upper[x1] == id || lower[x] == id || lower[x1] == id;
+  found[cells - 1] = last ? 1 : 0;
+}
+
+STILLMAP_VECTOR_CLONES
+void find_others(const std::uint8_t* ids, std::size_t cells, std::uint8_t* __restrict found) {
+  for (std::size_t c = 0; c < cells; ++c) found[c] = ids[2 * c];
+}
+
+struct StillRule {
+  float base_m, per_m;
+};
+
+/// Marks cells whose depth is the known one.
+STILLMAP_VECTOR_CLONES
+void find_still(const float* depth,
+                const float* known,
+                const StillRule& rule,
+                std::size_t cells,
+                std::uint8_t* __restrict found) {
+  const float base = rule.base_m, per = rule.per_m;
+  for (std::size_t c = 0; c < cells; ++c) {
+    const float tolerance = base + per * known[c] * known[c];
+    const bool still = (known[c] > 0) & (std::abs(known[c] - depth[c]) < tolerance);
+    found[c] = still ? 1 : found[c];
+  }
+}
+
+struct MeasuredRow {
+  const float* depth;
+  const std::uint8_t* ids;
+};
+
+/// Of the cells that the pixels are in.
+struct CellRow {
+  const float *depth, *reach;
+};
+
+/// Which pixels with its id are the object's: all, or those of these depths or without any.
+struct OwnRule {
+  std::uint8_t id;
+  bool all;
+  DepthInterval depths;
+};
+
+/// Decides which pixels of a row are the object's.
+STILLMAP_VECTOR_CLONES
+void decide(const MeasuredRow& row,
+            const CellRow& cells,
+            const OwnRule& own,
+            std::size_t size,
+            std::uint8_t* __restrict pixels) {
+  const float *depth = row.depth, *cell = cells.depth, *reach = cells.reach;
+  const std::uint8_t *ids = row.ids, id = own.id;
+  const bool all = own.all;
+  const float low = own.depths.min_m, high = own.depths.max_m;
+  for (std::size_t x = 0; x < size; ++x) {
+    const float z = depth[x];
+    const bool missing = z <= 0;
+    const bool by_mask = (ids[x] == id) & (missing | all | ((z >= low) & (z <= high)));
+    const bool near = (std::abs(z - cell[x]) < reach[x]) | (reach[x] == kAny);
+    const bool by_cell = (reach[x] >= 0) & (missing | near);
+    pixels[x] = by_mask | by_cell ? 1 : 0;
+  }
+}
 
 /// The depth of every second pixel in every second row, which is a quarter of the work and as good,
 /// as objects are larger than that. A rim of cells without depth saves asking for the border.
@@ -23,7 +138,10 @@ class GrowthGrid {
         columns_((area.x + area.width - x0_ + 1) / 2),
         rows_((area.y + area.height - y0_ + 1) / 2),
         stride_(columns_ + 2),
-        cells_(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(rows_ + 2)) {
+        cells_(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(rows_ + 2)),
+        row_depth_(static_cast<std::size_t>(columns_)),
+        row_mask_(row_depth_.size()),
+        row_other_(row_depth_.size()) {
     order_.reserve(cells_.size());
     for (int row = 0; row < rows_; ++row) fill_row(row);
   }
@@ -93,12 +211,17 @@ class GrowthGrid {
   }
 
   [[nodiscard]] PixelPatch pixels(const cv::Rect& area) const {
-    PixelPatch patch{area, cv::Mat1b(area.size(), std::uint8_t{0})};
-    for (int row = 0; row < rows_; ++row) {
-      const Cell* cells = &at(index(row, 0));
-      for (int column = 0; column < columns_; ++column) {
-        if (cells[column].part != 0 || cells[column].mask) copy_cell(row, column, patch);
-      }
+    PixelPatch patch{area, cv::Mat1b(area.size())};
+    std::vector<float> depth(2 * static_cast<std::size_t>(columns_)), reach(depth.size());
+    const auto first = static_cast<std::size_t>(area.x - x0_);
+    const OwnRule own{static_cast<std::uint8_t>(object_.id), !rule_.drop_outliers, rule_.seeds};
+    for (int y = area.y; y < area.y + area.height; ++y) {
+      if (y == area.y || (y - y0_) % 2 == 0) spread_cells((y - y0_) / 2, depth, reach);
+      decide({object_.depth.mat[y] + area.x, object_.mask.mat[y] + area.x},
+             {&depth[first], &reach[first]},
+             own,
+             static_cast<std::size_t>(area.width),
+             patch.pixels[y - area.y]);
     }
     return patch;
   }
@@ -140,35 +263,29 @@ class GrowthGrid {
   void fill_row(int row) {
     const int y = y0_ + 2 * row;
     const int y1 = std::min(y + 1, object_.depth.mat.rows - 1);
-    const int last = object_.depth.mat.cols - 1;
-    const float *upper = object_.depth.mat[y], *lower = object_.depth.mat[y1];
-    const std::uint8_t *ids = object_.mask.mat[y], *ids1 = object_.mask.mat[y1];
-    const float* known = rule_.known_static.empty() ? nullptr : rule_.known_static[y / 2];
-    const int id = object_.id;
-    for (int column = 0; column < columns_; ++column) {
-      const int x = x0_ + 2 * column, x1 = std::min(x + 1, last);
-      Cell& cell = at(index(row, column));
-      cell.rim = false;
-      cell.depth = first_known(upper[x], lower[x1], upper[x1], lower[x]);
-      cell.mask = ids[x] == id || ids[x1] == id || ids1[x] == id || ids1[x1] == id;
-      if (cell.mask) continue;
-      const bool still = known != nullptr && stands_still(cell.depth, known[x / 2]);
-      if (ids[x] != 0 || still) {  // somebody else's, or nobody's
-        cell.depth = 0;
-        cell.rim = true;
-      }
+    const PixelRows pixels{object_.depth.mat[y] + x0_,
+                           object_.depth.mat[y1] + x0_,
+                           object_.mask.mat[y] + x0_,
+                           object_.mask.mat[y1] + x0_,
+                           object_.depth.mat.cols - x0_};
+    const float* known = rule_.known_static.empty() ? nullptr : rule_.known_static[y / 2] + x0_ / 2;
+    const auto columns = static_cast<std::size_t>(columns_);
+    first_depths(pixels, columns, row_depth_.data());
+    find_ids(pixels, static_cast<std::uint8_t>(object_.id), columns, row_mask_.data());
+    find_others(pixels.ids0, columns, row_other_.data());
+    if (known != nullptr) {
+      find_still(row_depth_.data(),
+                 known,
+                 {rule_.static_m, rule_.static_per_m},
+                 columns,
+                 row_other_.data());
     }
-  }
-
-  [[nodiscard]] static float first_known(float a, float b, float c, float d) {
-    if (a > 0) return a;
-    if (b > 0) return b;
-    return c > 0 ? c : std::max(d, 0.0F);
-  }
-
-  [[nodiscard]] bool stands_still(float depth, float known) const {
-    const float tolerance = rule_.static_m + rule_.static_per_m * known * known;
-    return known > 0 && std::abs(known - depth) < tolerance;
+    Cell* cells = &at(index(row, 0));
+    for (std::size_t c = 0; c < columns; ++c) {
+      const bool mask = row_mask_[c] != 0;
+      const bool rim = !mask && row_other_[c] != 0;  // somebody else's, or nobody's
+      cells[c] = {rim ? 0.0F : row_depth_[c], 0, mask, false, rim};
+    }
   }
 
   [[nodiscard]] int index(int row, int column) const { return (row + 1) * stride_ + column + 1; }
@@ -213,27 +330,15 @@ class GrowthGrid {
     return rim == 0 ? 0.0 : static_cast<double>(ours) / static_cast<double>(rim);
   }
 
-  /// Decides on each of the cell's four pixels.
-  void copy_cell(int row, int column, PixelPatch& patch) const {
-    const Cell& cell = at(index(row, column));
-    const int left = std::max(x0_ + 2 * column, patch.area.x);
-    const int right = std::min(x0_ + 2 * column + 2, patch.area.x + patch.area.width);
-    const int top = std::max(y0_ + 2 * row, patch.area.y);
-    const int bottom = std::min(y0_ + 2 * row + 2, patch.area.y + patch.area.height);
-    for (int y = top; y < bottom; ++y) {
-      const float* depth = object_.depth.mat[y];
-      const std::uint8_t* ids = object_.mask.mat[y];
-      std::uint8_t* pixels = patch.pixels[y - patch.area.y] - patch.area.x;
-      for (int x = left; x < right; ++x) {
-        pixels[x] = belongs(cell, depth[x], ids[x] == object_.id) ? 1 : 0;
-      }
+  /// For both pixels of each cell of a row: its depth, and how far from it a pixel's may be.
+  void spread_cells(int row, std::vector<float>& depth, std::vector<float>& reach) const {
+    const Cell* cells = &at(index(row, 0));
+    for (std::size_t c = 0; c < static_cast<std::size_t>(columns_); ++c) {
+      const Cell& cell = cells[c];
+      const float far = cell.part == 0 ? kNobody : cell.part == kHole ? kAny : step(cell.depth);
+      depth[2 * c] = depth[2 * c + 1] = cell.depth;
+      reach[2 * c] = reach[2 * c + 1] = far;
     }
-  }
-
-  [[nodiscard]] bool belongs(const Cell& cell, float depth, bool mask) const {
-    if (mask && (depth <= 0 || !rule_.drop_outliers || rule_.seeds.contains(depth))) return true;
-    if (cell.part == 0) return false;
-    return cell.part == kHole || depth <= 0 || std::abs(depth - cell.depth) < step(cell.depth);
   }
 
   const ObjectView& object_;
@@ -242,6 +347,8 @@ class GrowthGrid {
   std::vector<Cell> cells_;
   std::vector<int> order_;  // cells taken, seeds first
   std::vector<Part> parts_;
+  std::vector<float> row_depth_;  // while cells are filled
+  std::vector<std::uint8_t> row_mask_, row_other_;
   std::size_t seeds_ = 0;
 };
 

@@ -149,6 +149,30 @@ TEST(ConnectedExtension, AnArmReachesBeyondTheBox) {
   EXPECT_LE(pixels_in(scene.extended(paper()), hand), 40);
 }
 
+TEST(ConnectedExtension, ReachesTheBorderOfImagesOfAnySize) {
+  for (const cv::Size size :
+       {cv::Size(80, 60), cv::Size(81, 60), cv::Size(80, 61), cv::Size(81, 61)}) {
+    for (const cv::Point corner : {cv::Point(50, 30), cv::Point(48, 32)}) {
+      const cv::Rect whole(corner, cv::Point(size.width, size.height));
+      DepthImage depth(cv::Mat1f(size, 3.0F));
+      depth.mat(whole).setTo(1.5F);
+      ObjectMask mask(cv::Mat1b(size, std::uint8_t{0}));
+      mask.mat(cv::Rect(whole.x, whole.y, whole.width - 7, whole.height - 5)).setTo(kId);
+      MaskExtensionConfig config;
+      config.grow_px = 400;  // of an image 640 wide
+      const MaskArea area = mask_areas(mask)[kId];
+      const ObjectDepths depths = object_depths(depth, mask, kId, area, outlier_rule(config));
+      const PixelBox box{static_cast<double>(whole.x),
+                         static_cast<double>(whole.y),
+                         static_cast<double>(size.width),
+                         static_cast<double>(size.height)};
+      const PixelPatch patch = extend_mask({depth, mask, kId, box}, area, depths, config, {});
+      EXPECT_EQ(pixels_in(patch, whole), whole.area()) << size << corner;
+      EXPECT_EQ(cv::countNonZero(patch.pixels), whole.area()) << size << corner;
+    }
+  }
+}
+
 TEST(ConnectedExtension, SomethingApartAtTheSameDepthStaysStatic) {
   Scene scene;
   const cv::Rect box_on_a_table(84, 70, 12, 20);  // four pixels of wall between

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <numbers>
 
 #include "stillmap/core/vector_clones.hpp"
@@ -20,6 +21,29 @@ constexpr std::array<int, kPatchRadiusPx + 1> kHalfWidths = [] {
     widths[static_cast<std::size_t>(v)] = u;
   }
   return widths;
+}();
+
+// The square round the patch, row by row, with one more in each row: whole vectors.
+constexpr std::size_t kPatchSide = 2 * kPatchRadiusPx + 1, kPatchStride = kPatchSide + 1;
+constexpr std::size_t kPatchCells = kPatchSide * kPatchStride;
+
+// Distances from the centre, 0 out of the round patch.
+struct Moments {
+  std::array<std::int16_t, kPatchCells> x{}, y{};
+};
+
+constexpr Moments kMoments = [] {
+  Moments moments;
+  for (int v = -kPatchRadiusPx; v <= kPatchRadiusPx; ++v) {
+    const int half_width = kHalfWidths[static_cast<std::size_t>(v < 0 ? -v : v)];
+    for (int u = -half_width; u <= half_width; ++u) {
+      const auto cell = static_cast<std::size_t>(v + kPatchRadiusPx) * kPatchStride +
+                        static_cast<std::size_t>(u + kPatchRadiusPx);
+      moments.x[cell] = static_cast<std::int16_t>(u);
+      moments.y[cell] = static_cast<std::int16_t>(v);
+    }
+  }
+  return moments;
 }();
 
 // The pattern's points one after the other, in an order that the compiler can work on in parallel.
@@ -49,16 +73,15 @@ float rounded(float value) {
 
 STILLMAP_VECTOR_CLONES
 float patch_orientation_deg(const cv::Mat1b& image, cv::Point at) {
+  std::array<std::uint8_t, kPatchCells> patch{};
+  for (std::size_t v = 0; v < kPatchSide; ++v) {
+    const int row = at.y + static_cast<int>(v) - kPatchRadiusPx;
+    std::memcpy(&patch[v * kPatchStride], image.ptr(row) + at.x - kPatchRadiusPx, kPatchSide);
+  }
   int moment_x = 0, moment_y = 0;
-  for (int v = -kPatchRadiusPx; v <= kPatchRadiusPx; ++v) {
-    const std::uint8_t* row = image.ptr(at.y + v) + at.x;
-    const int half_width = kHalfWidths[static_cast<std::size_t>(std::abs(v))];
-    int sum = 0;
-    for (int u = -half_width; u <= half_width; ++u) {
-      sum += row[u];
-      moment_x += u * row[u];
-    }
-    moment_y += v * sum;
+  for (std::size_t i = 0; i < kPatchCells; ++i) {
+    moment_x += kMoments.x[i] * static_cast<std::int16_t>(patch[i]);
+    moment_y += kMoments.y[i] * static_cast<std::int16_t>(patch[i]);
   }
   return cv::fastAtan2(static_cast<float>(moment_y), static_cast<float>(moment_x));
 }

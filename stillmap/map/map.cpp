@@ -31,15 +31,17 @@ std::size_t most_central(std::span<const Descriptor> descriptors) {
   int best_median = std::numeric_limits<int>::max();
   std::vector<int> distances(descriptors.size());
   for (std::size_t i = 0; i < descriptors.size(); ++i) {
+    std::size_t less = 0;  // distances than the best median
     for (std::size_t j = 0; j < descriptors.size(); ++j) {
       distances[j] = hamming_distance(descriptors[i], descriptors[j]);
+      less += distances[j] < best_median ? 1 : 0;
     }
-    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>((distances.size() - 1) / 2);
-    std::ranges::nth_element(distances, middle);
-    if (*middle < best_median) {
-      best_median = *middle;
-      best = i;
-    }
+    const std::size_t middle = (distances.size() - 1) / 2;
+    if (less <= middle) continue;  // so the median is none; to find it takes most of the time
+    const auto median = distances.begin() + static_cast<std::ptrdiff_t>(middle);
+    std::ranges::nth_element(distances, median);
+    best_median = *median;
+    best = i;
   }
   return best;
 }
