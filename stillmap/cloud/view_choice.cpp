@@ -9,7 +9,7 @@ namespace stillmap {
 namespace {
 
 constexpr std::size_t kSamples = 512;      // of the view
-constexpr std::size_t kHeldSamples = 256;  // of each other one
+constexpr std::size_t kHeldSamples = 128;  // of each other one
 
 /// Some of a view's points, in the world.
 std::vector<Eigen::Vector3f> samples(const PosedView& posed, std::size_t most) {
@@ -129,7 +129,10 @@ ViewNews news_of(const PosedView& view,
   ViewNews news;
   const Comparison comparison(camera, config, free_space);
   comparison.look_at(view, with_range, news);
-  if (!view.view->range.cells.empty()) comparison.look_through(view, with_range, news);
+  const bool joins_anyway = joins(news, config);
+  if (!joins_anyway && !view.view->range.cells.empty()) {
+    comparison.look_through(view, with_range, news);
+  }
   return news;
 }
 

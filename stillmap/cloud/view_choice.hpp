@@ -47,7 +47,8 @@ struct ViewChoiceConfig {
 struct ViewNews {
   double unknown = 0;  ///< not seen by enough of them from near enough
   double came = 0;     ///< stands where the last of them see through
-  double went = 0;     ///< is seen through although the map made of them has it
+  double went = 0;     ///< is seen through although the map made of them has it; not looked for
+                       ///< where the others suffice for the view to join
 };
 
 /// Compares a sample of a view's points with the ranges of the views held, in the order of their
