@@ -14,8 +14,8 @@ struct KeyframePolicyConfig {
   int min_near_tracked = 100;
   int min_near_untracked = 70;
   double near_depth_m = 3.0;
-  int known_observers = 10;
-  double max_known_share = 0.5;
+  int known_observers = 8;
+  double max_known_share = 0.6;
   double min_known_tracked_ratio = 0.5;
 
   template <class Self, class Visitor>

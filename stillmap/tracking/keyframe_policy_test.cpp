@@ -90,8 +90,8 @@ TEST(WantsKeyframe, InAKnownPlaceOnlyWhenFarFewerAreFound) {
 
 TEST(WantsKeyframe, KnownIsWhereEnoughLandmarksAreSeenByEnough) {
   const TrackedFrame frame = frame_with(100, 5);  // of up to 200: the share would be below 75 %
-  EXPECT_TRUE(wants(frame, 10, 200, map_with(50)));
-  EXPECT_FALSE(wants(frame, 10, 200, map_with(51)));
+  EXPECT_TRUE(wants(frame, 10, 200, map_with(60)));
+  EXPECT_FALSE(wants(frame, 10, 200, map_with(61)));
   KeyframePolicyConfig config;
   config.max_known_share = 1;  // the rule is off
   EXPECT_TRUE(
