@@ -8,11 +8,12 @@
 
 namespace stillmap {
 
-FrameSource::FrameSource(const TumSequence& sequence, std::vector<FrameId> frames)
-    : sequence_(sequence), frames_(std::move(frames)) {}
+FrameSource::FrameSource(const TumSequence& sequence, std::vector<FrameId> frames, StageProbe probe)
+    : sequence_(sequence), frames_(std::move(frames)), probe_(std::move(probe)) {}
 
 std::optional<SourcedFrame> FrameSource::next() {
   if (next_ == frames_.size()) return std::nullopt;
+  begin_work(probe_, Stage::kReading);
   SourcedFrame sourced;
   sourced.id = frames_[next_++];
   Stopwatch reading;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "stillmap/core/stage_probe.hpp"
 #include "stillmap/io/tum_sequence.hpp"
 
 namespace stillmap {
@@ -21,7 +22,7 @@ struct SourcedFrame {
 class FrameSource {
  public:
   /// The sequence outlives the source.
-  FrameSource(const TumSequence& sequence, std::vector<FrameId> frames);
+  FrameSource(const TumSequence& sequence, std::vector<FrameId> frames, StageProbe probe = {});
 
   /// The next frame; nothing at the end. Throws Error for an image of the wrong kind or size.
   [[nodiscard]] std::optional<SourcedFrame> next();
@@ -29,6 +30,7 @@ class FrameSource {
  private:
   const TumSequence& sequence_;
   std::vector<FrameId> frames_;
+  StageProbe probe_;
   std::size_t next_ = 0;
 };
 

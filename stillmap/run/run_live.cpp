@@ -92,8 +92,10 @@ double LiveLoop::process(const FramePtr& frame) {
 
 void run_by_clock(
     const LiveInput& input, Clock& clock, LiveLoop& loop, RunLog& log, LiveReport& report) {
-  LiveCamera camera(
-      FrameSource(input.sequence, input.frames), input.sequence, input.options.live->speed, clock);
+  LiveCamera camera(FrameSource(input.sequence, input.frames, input.options.probe),
+                    input.sequence,
+                    input.options.live->speed,
+                    clock);
   while (std::optional<CapturedFrame> captured = camera.next()) {
     if (camera.dropped() > report.dropped) log.pass(camera.dropped() - report.dropped);
     report.dropped = camera.dropped();
@@ -109,7 +111,7 @@ void run_by_clock(
 void run_recorded(const LiveInput& input, LiveLoop& loop, RunLog& log) {
   std::vector<FrameId> frames;
   for (const LiveStep& step : *input.options.live->record) frames.push_back(step.frame);
-  FrameSource source(input.sequence, frames);
+  FrameSource source(input.sequence, frames, input.options.probe);
   Ahead<SourcedFrame> read([&] { return source.next(); }, input.options.threads > 1 ? 4 : 0);
   while (std::optional<SourcedFrame> next = read.next()) {
     if (next->frame == nullptr)

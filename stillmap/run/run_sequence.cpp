@@ -67,7 +67,7 @@ SequenceRun run_sequence(const TumSequence& sequence,
                          RunOptions options) {
   const std::vector<FrameId> frames = select_frames(sequence, options.frames);
   RunLog log(sequence, config, options, frames.size());
-  System system(config, sequence.camera(), {options.threads, options.localize_only});
+  System system(config, sequence.camera(), {options.threads, options.localize_only, options.probe});
   if (options.start) system.load(std::move(*options.start));
   if (options.live) {
     LiveResult live = run_live({sequence, frames, config, options}, system, log);
@@ -76,7 +76,7 @@ SequenceRun run_sequence(const TumSequence& sequence,
     run.report.live = std::move(live.report);
     return run;
   }
-  FramePreparation prepared(FrameSource(sequence, frames),
+  FramePreparation prepared(FrameSource(sequence, frames, options.probe),
                             ObjectSource(options.segmenter, config.dynamics.object_tracking()),
                             system,
                             options.threads > 1);

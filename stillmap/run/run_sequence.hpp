@@ -43,6 +43,7 @@ struct RunOptions {
   std::optional<Trajectory> groundtruth;
   std::function<void(std::size_t done, std::size_t total)> on_progress;  ///< may be empty
   std::function<void(const std::string&)> on_warning;                    ///< may be empty
+  StageProbe probe = {};                                                 ///< of tests
 };
 
 struct SequenceRun {

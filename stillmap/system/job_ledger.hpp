@@ -21,12 +21,18 @@ namespace stillmap {
 template <class Result>
 class JobLedger {
  public:
-  /// `worker` may be null: jobs then run inline. It must outlive the ledger.
-  explicit JobLedger(Worker* worker) : worker_(worker) {}
+  /// `worker` may be null: jobs then run inline. It must outlive the ledger. Each job begins with
+  /// `before_job`, if there is one.
+  explicit JobLedger(Worker* worker, std::function<void()> before_job = {})
+      : worker_(worker), before_job_(std::move(before_job)) {}
 
   /// Frames are counted over those processed; due frames never decrease from job to job.
   void submit(std::int64_t due_frame, std::function<Result()> job) {
-    auto task = std::make_shared<std::packaged_task<Result()>>(std::move(job));
+    auto task = std::make_shared<std::packaged_task<Result()>>(
+        [before = before_job_, job = std::move(job)] {
+          if (before) before();
+          return job();
+        });
     jobs_.push_back({due_frame, task->get_future()});
     if (worker_ != nullptr) {
       worker_->post([task] { (*task)(); });
@@ -55,6 +61,7 @@ class JobLedger {
   };
 
   Worker* worker_;
+  std::function<void()> before_job_;
   std::deque<Job> jobs_;
 };
 

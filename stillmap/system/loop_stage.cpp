@@ -9,13 +9,14 @@ LoopStage::LoopStage(const LoopConfig& config,
                      const CameraModel& camera,
                      const MeasurementModel& measure,
                      std::uint32_t seed,
-                     bool threaded)
+                     const StageOptions& options)
     : config_(config),
       camera_(camera),
       measure_(measure),
       detector_(config, camera, measure, seed),
-      worker_(threaded ? std::make_unique<Worker>() : nullptr),
-      adjustments_(worker_.get()) {}
+      worker_(options.threaded ? std::make_unique<Worker>() : nullptr),
+      adjustments_(worker_.get(),
+                   [probe = options.probe] { begin_work(probe, Stage::kAdjustment); }) {}
 
 bool LoopStage::close(Session& session, KeyframeId newest, std::int64_t frame) {
   if (!config_.enabled) return false;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#include "stillmap/core/stage_probe.hpp"
 #include "stillmap/loop_closing/global_adjustment.hpp"
 #include "stillmap/loop_closing/loop_detector.hpp"
 #include "stillmap/session/session.hpp"
@@ -18,13 +19,13 @@ namespace stillmap {
 /// All calls that may move the map are made while no window of it is being worked on.
 class LoopStage {
  public:
-  /// `measure` trusts depth as far as the sensor earns it. `threaded`: the adjustment of the world
-  /// runs on a thread of its own. The same bits either way.
+  /// `measure` trusts depth as far as the sensor earns it. The adjustment of the
+  /// world is what may run on a thread of its own. The same bits either way.
   LoopStage(const LoopConfig& config,
             const CameraModel& camera,
             const MeasurementModel& measure,
             std::uint32_t seed,
-            bool threaded);
+            const StageOptions& options);
 
   [[nodiscard]] const PlaceIndex& places() const { return places_; }
   void add_keyframe(const Keyframe& keyframe) {

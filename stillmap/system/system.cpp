@@ -29,19 +29,20 @@ System::System(const SystemConfig& config, const CameraModel& camera, const Syst
       camera_(camera),
       threads_(static_cast<std::size_t>(std::max(options.threads, 1))),
       localize_only_(options.localize_only),
+      probe_(options.probe),
       dynamics_(config.dynamics, camera, config.seed),
       extractor_(config.tracking.orb, camera),
       measure_(config.measurement, extractor_.level_scales()),
       session_{camera, {}, Map(extractor_.level_scales()), {}, {}, {}},
       tracker_(config.tracking.tracker, config.relocalization, camera, measure_, config.seed),
       worker_(options.threads > 1 ? std::make_unique<Worker>() : nullptr),
-      mapping_jobs_(worker_.get()),
-      views_(cloud_config_, camera, options.threads > 1),
+      mapping_jobs_(worker_.get(), [probe = options.probe] { begin_work(probe, Stage::kMapping); }),
+      views_(cloud_config_, camera, {options.threads > 1, options.probe}),
       loops_(config.loop,
              camera,
              between_views(config, extractor_.level_scales()),
              config.seed,
-             options.threads > 1) {}
+             {options.threads > 1, options.probe}) {}
 
 void System::load(Session session) {
   STILLMAP_CHECK(frame_number_ == 0);
@@ -60,6 +61,7 @@ void System::load(Session session) {
 }
 
 PreparedFrame System::prepare(const RgbdFrame& frame, const FrameObjects& objects) const {
+  begin_work(probe_, Stage::kPreparation);
   Stopwatch stage;
   PreparedFrame prepared;
   prepared.corners = extractor_.corners(frame.gray);
@@ -78,6 +80,7 @@ FrameResult System::process(const FramePtr& frame,
                             FrameObjects objects,
                             PreparedFrame prepared,
                             MaskOrigin origin) {
+  begin_work(probe_, Stage::kTracking);
   Stopwatch total, stage;
   FrameResult result;
   update_map(frame_number_);

@@ -40,6 +40,7 @@ struct RunResult {
 struct SystemOptions {
   int threads = 1;  ///< 2 or more: mapping, clouds and loops beside the caller; the end on so many
   bool localize_only = false;  ///< the map stays as it is
+  StageProbe probe = {};       ///< of tests
 };
 
 /// The SLAM system: owns the map and every stage.
@@ -124,6 +125,7 @@ class System {
   CameraModel camera_;
   std::size_t threads_;
   bool localize_only_;
+  StageProbe probe_;
   DynamicsStage dynamics_;
   OrbExtractor extractor_;
   MeasurementModel measure_;

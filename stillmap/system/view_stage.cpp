@@ -16,12 +16,14 @@ constexpr std::int64_t kLagFrames = 30;
 
 }  // namespace
 
-ViewStage::ViewStage(const CloudConfig& config, const CameraModel& camera, bool threaded)
+ViewStage::ViewStage(const CloudConfig& config,
+                     const CameraModel& camera,
+                     const StageOptions& options)
     : config_(config),
       camera_(camera),
       rays_(pixel_rays(camera)),
-      worker_(threaded ? std::make_unique<Worker>() : nullptr),
-      jobs_(worker_.get()) {}
+      worker_(options.threaded ? std::make_unique<Worker>() : nullptr),
+      jobs_(worker_.get(), [probe = options.probe] { begin_work(probe, Stage::kViews); }) {}
 
 void ViewStage::add(const Candidate& candidate, std::int64_t frame_number) {
   const auto record = static_cast<std::int64_t>(candidate.record);

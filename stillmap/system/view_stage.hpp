@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "stillmap/core/stage_probe.hpp"
 #include "stillmap/session/session.hpp"
 #include "stillmap/system/cloud_stage.hpp"
 #include "stillmap/system/job_ledger.hpp"
@@ -15,9 +16,8 @@ namespace stillmap {
 /// Makes the dense map's views: of key frames and of some frames between them.
 class ViewStage {
  public:
-  /// `config` is decided. `threaded`: views are made on a thread of their own. They are in the
-  /// session some frames later.
-  ViewStage(const CloudConfig& config, const CameraModel& camera, bool threaded);
+  /// `config` is decided. Views are in the session some frames after they were begun.
+  ViewStage(const CloudConfig& config, const CameraModel& camera, const StageOptions& options);
 
   /// Views that have not been begun are dropped.
   ~ViewStage() { worker_.reset(); }
