@@ -12,7 +12,7 @@
 namespace stillmap {
 
 struct MappingConfig {
-  int lag_frames = 3;
+  int lag_frames = 6;
   int window_keyframes = 20;
   double fusion_radius_px = 6;
   LandmarkCreationConfig creation;

@@ -26,7 +26,7 @@ struct CloudConfig {
   double voxel_size_m = 0.01;
   StaticDepthConfig depth;
   LocalCloudConfig local;
-  int view_gap_frames = 6;
+  int view_gap_frames = 4;
   ViewChoiceConfig views;
   std::string free_space = "by_mode";
   RangeImageConfig range;

@@ -22,7 +22,7 @@ ViewStage::ViewStage(const CloudConfig& config,
     : config_(config),
       camera_(camera),
       rays_(pixel_rays(camera)),
-      worker_(options.threaded ? std::make_unique<Worker>() : nullptr),
+      worker_(options.threaded ? std::make_unique<Worker>(Worker::Priority::kLow) : nullptr),
       jobs_(worker_.get(), [probe = options.probe] { begin_work(probe, Stage::kViews); }) {}
 
 void ViewStage::add(const Candidate& candidate, std::int64_t frame_number) {

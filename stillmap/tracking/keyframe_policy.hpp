@@ -8,7 +8,7 @@
 namespace stillmap {
 
 struct KeyframePolicyConfig {
-  int min_gap_frames = 4;
+  int min_gap_frames = 6;
   int max_gap_frames = 30;
   double min_tracked_ratio = 0.75;
   int min_near_tracked = 100;
