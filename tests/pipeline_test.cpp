@@ -36,7 +36,7 @@ class PersonSegmenter : public Segmenter {
 
 SequenceRun run_wall(const Segmenter& segmenter, int threads, StageProbe probe) {
   SystemConfig config;
-  config.keyframe.max_gap_frames = 4;  // so that there is always something to map
+  config.keyframe.max_gap_frames = 6;  // so that there is always something to map
   RunOptions options;
   options.segmenter = &segmenter;
   options.threads = threads;

@@ -108,10 +108,12 @@ TEST(RelocationTrials, FindAPlaceFromNearby) {
     if (is_near_the_known_part(k)) frames.push_back(k);
   }
   ASSERT_GT(frames.size(), 10U);
-  std::mt19937 rng(2);
-  int found = 0;
-  for (int i = 0; i < 3; ++i) found += is_found_soon(frames[rng() % frames.size()]) ? 1 : 0;
-  EXPECT_GE(found, 2);  // in some, people hide most of what is known
+  std::size_t found = 0, trials = 0;
+  for (std::size_t i = 0; i < frames.size(); i += 3) {
+    found += is_found_soon(frames[i]) ? 1U : 0U;
+    ++trials;
+  }
+  EXPECT_GE(2 * found, trials);  // in some, people hide most of what is known
 }
 
 TEST(RelocationTrials, StayLostInAnUnknownPlace) {

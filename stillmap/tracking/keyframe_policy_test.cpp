@@ -52,8 +52,8 @@ bool wants(const TrackedFrame& frame, int frames, int most_inliers, const Map& m
 }
 
 TEST(WantsKeyframe, NeverTooSoonAndAlwaysAfterTheLongestGap) {
-  EXPECT_FALSE(wants(frame_with(0), 3, 200));
-  EXPECT_TRUE(wants(frame_with(0), 4, 200));
+  EXPECT_FALSE(wants(frame_with(0), 5, 200));
+  EXPECT_TRUE(wants(frame_with(0), 6, 200));
   EXPECT_FALSE(wants(frame_with(380), 29, 380));
   EXPECT_TRUE(wants(frame_with(380), 30, 380));
 }
