@@ -1,39 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Live runs of a sequence, by a clock of the test, with a network that takes as long as it likes.
-#include <algorithm>
 #include <chrono>
 #include <set>
-#include <thread>
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "stillmap/core/error.hpp"
 #include "stillmap/run/run_sequence.hpp"
 #include "tests/live_test_support.hpp"
 
 namespace stillmap {
 namespace {
-
-// Calls a part of the wall a person, after some time.
-class SlowSegmenter : public Segmenter {
- public:
-  explicit SlowSegmenter(std::chrono::milliseconds time) : time_(time) {}
-
-  [[nodiscard]] FrameDetections segment(const ColorImage& color,
-                                        const Stamp& stamp) const override {
-    std::this_thread::sleep_for(time_);
-    if (fails_at_s_ > 0 && stamp.seconds >= fails_at_s_) throw Error("the network is broken");
-    ObjectMask mask(cv::Mat1b(color.mat.size(), std::uint8_t{0}));
-    mask.mat(cv::Rect(10, 10, 60, 100)).setTo(1);
-    return {stamp, {{1, "person", 0.9F, {10, 10, 70, 110}}}, mask};
-  }
-  void fail_at(double stamp_s) { fails_at_s_ = stamp_s; }
-
- private:
-  std::chrono::milliseconds time_;
-  double fails_at_s_ = 0;
-};
 
 // Each frame takes `frame_s` of the clock, while the network takes real time.
 SequenceRun run_live_wall(const Segmenter* segmenter, double frame_s) {
@@ -55,22 +31,9 @@ SequenceRun run_again(const Segmenter* segmenter, const LiveRecord& record, int 
   return run_sequence(wall_sequence(), {}, std::move(options));
 }
 
-void expect_same(const SequenceRun& a, const SequenceRun& b) {
-  ASSERT_EQ(a.result.trajectory.size(), b.result.trajectory.size());
-  for (std::size_t i = 0; i < a.result.trajectory.size(); ++i) {
-    EXPECT_EQ(a.result.trajectory[i].stamp.text, b.result.trajectory[i].stamp.text);
-    EXPECT_EQ(a.result.trajectory[i].T_world_camera.matrix(),
-              b.result.trajectory[i].T_world_camera.matrix());
-  }
-  EXPECT_EQ(a.result.keyframes.size(), b.result.keyframes.size());
-  EXPECT_TRUE(a.result.map.positions == b.result.map.positions);
-  EXPECT_EQ(a.objects_jsonl, b.objects_jsonl);
-  EXPECT_EQ(a.live_record, b.live_record);
-}
-
 TEST(LiveRun, CanBeMadeAgainToTheBit) {
   for (const int network_ms : {0, 3, 20}) {
-    const SlowSegmenter segmenter{std::chrono::milliseconds(network_ms)};
+    const PersonSegmenter segmenter{std::chrono::milliseconds(network_ms)};
     const SequenceRun live = run_live_wall(&segmenter, 0.040);
     EXPECT_LT(live.live_record.size(), kWallFrames);  // some were dropped
     EXPECT_GT(live.report.live->looked_at, 0U);
@@ -89,7 +52,7 @@ TEST(LiveRun, WithoutANetworkNeedsNoMasks) {
 }
 
 TEST(LiveRun, CountsWhatWasDropped) {
-  const SlowSegmenter segmenter{std::chrono::milliseconds(1)};
+  const PersonSegmenter segmenter{std::chrono::milliseconds(1)};
   const SequenceRun live = run_live_wall(&segmenter, 0.100);
   const LiveReport& report = *live.report.live;
   EXPECT_EQ(report.dropped + live.live_record.size(), kWallFrames);
@@ -100,7 +63,7 @@ TEST(LiveRun, CountsWhatWasDropped) {
 
 // The first frame waits for its objects, and key frames are frames that were looked at.
 TEST(LiveRun, KeyframesHaveMasksOfTheirOwn) {
-  const SlowSegmenter segmenter{std::chrono::milliseconds(5)};
+  const PersonSegmenter segmenter{std::chrono::milliseconds(5)};
   const SequenceRun live = run_live_wall(&segmenter, 0.030);
   std::set<std::string> looked_at;
   for (const LiveStep& step : live.live_record) {
@@ -117,8 +80,7 @@ TEST(LiveRun, KeyframesHaveMasksOfTheirOwn) {
 }
 
 TEST(LiveRun, EndsWithTheNetworksError) {
-  SlowSegmenter segmenter{std::chrono::milliseconds(1)};
-  segmenter.fail_at(100.3);
+  const PersonSegmenter segmenter(std::chrono::milliseconds(1), 100.3);
   EXPECT_EQ(error_of([&] { (void)run_live_wall(&segmenter, 0.030); }), "the network is broken");
 }
 
