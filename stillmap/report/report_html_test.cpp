@@ -228,6 +228,17 @@ TEST(ReportHtml, of_nothing_says_so_in_each_section) {
   EXPECT_THAT(page, Not(HasSubstr("warning</summary>")));
 }
 
+TEST(ReportHtml, says_how_a_live_run_kept_up) {
+  RunReport report;
+  EXPECT_THAT(report_html(report), Not(HasSubstr("Live:")));
+  report.live = LiveReport{1.0, 7, 93, {1, 2, 3, 4, 9}, {10, 20, 30}};
+  EXPECT_THAT(report_html(report),
+              HasSubstr("Live: 7 frames were dropped, the network looked at 93; objects were 3 "
+                        "frames old in the median"));
+  report.live->latency_ms.clear();
+  EXPECT_THAT(report_html(report), Not(HasSubstr("after it came")));
+}
+
 TEST(ReportHtml, of_a_run_that_tracked_nothing) {
   RunReport report;
   report.frames_total = 5;

@@ -94,10 +94,27 @@ std::string frames_html(const std::vector<double>& frame_ms) {
   return "<h3>Each frame, from its arrival to its pose, without the network</h3>" + plot_svg(plot);
 }
 
+std::string live_html(const std::optional<LiveReport>& live) {
+  if (!live) return "";
+  std::string out = fmt::format("<p>Live: {} frames were dropped, the network looked at {}",
+                                count_text(live->dropped),
+                                count_text(live->looked_at));
+  if (const std::optional<TimeSummary> age = summarize_times(live->objects_age_frames)) {
+    out += fmt::format(
+        "; objects were {:.0f} frames old in the median, {:.0f} at 95 %", age->median, age->p95);
+  }
+  if (const std::optional<TimeSummary> latency = summarize_times(live->latency_ms)) {
+    out += fmt::format(". A frame's pose was there {} after it came in the median, {} at 95 %",
+                       duration_text(latency->median),
+                       duration_text(latency->p95));
+  }
+  return out + ".</p>";
+}
+
 }  // namespace
 
 std::string timing_html(const RunReport& report) {
-  return stages_html(report.stages) + frames_html(report.frame_ms);
+  return live_html(report.live) + stages_html(report.stages) + frames_html(report.frame_ms);
 }
 
 std::string features_html(const RunReport& report) {
