@@ -56,14 +56,15 @@ void track_frame(benchmark::State& state) {
   std::vector<Features> seen;
   for (int k = 0; k < kRound; ++k) seen.push_back(world().observe(pose(k), kNoise, rng).features);
   Tracker tracker({}, {}, world().camera(), model(), 0);
-  (void)tracker.start(frame_at(0), *simulated.map.keyframe(KeyframeId(0)).features);
+  (void)tracker.start(frame_at(0), simulated.map.keyframe(KeyframeId(0)).features);
   tracker.set_reference(KeyframeId(0), simulated.map);
+  const PlaceIndex places;  // nobody asks it where tracking goes on
   int k = 0;
   int inliers = 0;
   for (auto iteration : state) {
     ++k;
     const std::size_t at = static_cast<std::size_t>(k % kRound);
-    const TrackedFrame tracked = tracker.track(frame_at(k), seen[at], simulated.map);
+    const TrackedFrame tracked = tracker.track(frame_at(k), seen[at], simulated.map, places);
     if (!has_pose(tracked)) return state.SkipWithError("tracking was lost");
     inliers = tracked.inliers;
   }
