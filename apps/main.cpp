@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <opencv2/core/utility.hpp>
 #include <opencv2/core/version.hpp>
 
@@ -52,7 +52,9 @@ using AddCommand = void (*)(CLI::App&, CommandResult&);
 // In the order of --help.
 const std::vector<AddCommand> kCommands = {add_run_command,
                                            add_segment_command,
+#if STILLMAP_WITH_SIMULATION
                                            add_synth_command,
+#endif
                                            add_evaluate_command,
                                            add_export_command,
                                            add_merge_command,

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <thread>
 
-#include "stillmap/run/clock.hpp"
+#include "stillmap/sensor/clock.hpp"
 
 namespace stillmap {
 

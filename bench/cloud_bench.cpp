@@ -6,13 +6,13 @@
 
 #include <benchmark/benchmark.h>
 
-#include "stillmap/cloud/free_space.hpp"
-#include "stillmap/cloud/global_cloud.hpp"
-#include "stillmap/cloud/local_cloud.hpp"
-#include "stillmap/cloud/static_depth.hpp"
-#include "stillmap/core/camera.hpp"
 #include "stillmap/core/rgbd_frame.hpp"
-#include "stillmap/core/se3.hpp"
+#include "stillmap/dense/free_space.hpp"
+#include "stillmap/dense/global_cloud.hpp"
+#include "stillmap/dense/local_cloud.hpp"
+#include "stillmap/dense/static_depth.hpp"
+#include "stillmap/geometry/camera.hpp"
+#include "stillmap/geometry/se3.hpp"
 
 namespace stillmap {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "stillmap/dynamics/depth_jump.hpp"
+#include "stillmap/perception/motion/depth_jump.hpp"
 
 namespace stillmap {
 namespace {

@@ -4,8 +4,8 @@
 #include <opencv2/core.hpp>
 
 #include "bench/rendered_office.hpp"
-#include "stillmap/features/orb_extractor.hpp"
-#include "stillmap/system/dynamics_stage.hpp"
+#include "stillmap/perception/motion/dynamics_stage.hpp"
+#include "stillmap/slam/features/orb_extractor.hpp"
 
 namespace stillmap {
 namespace {
@@ -26,7 +26,7 @@ class Office {
         continue;
       }
       FrameDynamics dynamics = judge(step, std::move(objects));
-      if (step + 1 == kPast) (void)sift(step, extract(step, dynamics), dynamics);
+      if (step + 1 == kPast) (void)filter(step, extract(step, dynamics), dynamics);
       stage_.remember(*frame, office().T_world_camera(step), dynamics);
     }
   }
@@ -39,10 +39,10 @@ class Office {
     const FramePtr frame = office().frame(step);
     return extractor_.extract(frame->gray, frame->depth, dynamics.excluded);
   }
-  [[nodiscard]] SiftedFeatures sift(std::uint32_t step,
-                                    Features features,
-                                    const FrameDynamics& dynamics) {
-    return stage_.sift(
+  [[nodiscard]] FilteredFeatures filter(std::uint32_t step,
+                                        Features features,
+                                        const FrameDynamics& dynamics) {
+    return stage_.filter(
         *office().frame(step), std::move(features), dynamics, office().T_world_camera(step));
   }
   void remember(std::uint32_t step, FrameDynamics& dynamics) {
@@ -79,7 +79,7 @@ void sift_features(benchmark::State& state) {
   std::uint32_t turn = 0;
   for (auto iteration : state) {
     const std::uint32_t next = turn++ % 2;
-    kept = scene.sift(kPast + next, features[next], dynamics[next]).features.size();
+    kept = scene.filter(kPast + next, features[next], dynamics[next]).features.size();
   }
   state.counters["kept"] = static_cast<double>(kept);
   state.counters["of"] = static_cast<double>(features[(turn + 1) % 2].size());

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <benchmark/benchmark.h>
 
-#include "stillmap/features/brief.hpp"
-#include "stillmap/features/fast_corners.hpp"
-#include "stillmap/features/features_test_support.hpp"
-#include "stillmap/features/matcher.hpp"
-#include "stillmap/features/orb_extractor.hpp"
-#include "stillmap/features/patch_blur.hpp"
+#include "stillmap/slam/features/brief.hpp"
+#include "stillmap/slam/features/fast_corners.hpp"
+#include "stillmap/slam/features/matcher.hpp"
+#include "stillmap/slam/features/orb_extractor.hpp"
+#include "stillmap/slam/features/patch_blur.hpp"
+#include "tests/support/feature_images.hpp"
 
 namespace stillmap {
 namespace {

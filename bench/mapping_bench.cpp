@@ -5,10 +5,10 @@
 
 #include <benchmark/benchmark.h>
 
-#include "stillmap/core/se3.hpp"
-#include "stillmap/mapping/local_mapper.hpp"
-#include "stillmap/testing/simulated_map.hpp"
-#include "stillmap/tracking/tracker.hpp"
+#include "stillmap/geometry/se3.hpp"
+#include "stillmap/slam/mapping/local_mapper.hpp"
+#include "stillmap/slam/tracking/tracker.hpp"
+#include "tests/support/simulated_map.hpp"
 
 namespace stillmap {
 namespace {

@@ -6,7 +6,7 @@
 #include <benchmark/benchmark.h>
 #include <ceres/ceres.h>
 
-#include "stillmap/optim/optim_test_support.hpp"
+#include "tests/support/optim_problems.hpp"
 
 namespace stillmap {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <benchmark/benchmark.h>
 
-#include "stillmap/features/features_test_support.hpp"
-#include "stillmap/place/place_index.hpp"
+#include "stillmap/slam/map/place_index.hpp"
+#include "tests/support/feature_images.hpp"
 
 namespace stillmap {
 namespace {

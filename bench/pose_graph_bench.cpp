@@ -4,8 +4,8 @@
 
 #include <benchmark/benchmark.h>
 
-#include "stillmap/core/se3.hpp"
-#include "stillmap/pose_graph/pose_graph.hpp"
+#include "stillmap/geometry/se3.hpp"
+#include "stillmap/slam/optim/pose_graph.hpp"
 
 namespace stillmap {
 namespace {

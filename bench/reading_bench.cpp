@@ -3,8 +3,8 @@
 #include <benchmark/benchmark.h>
 
 #include "bench/rendered_office.hpp"
-#include "stillmap/dynamics/object_tracker.hpp"
 #include "stillmap/io/image_io.hpp"
+#include "stillmap/perception/objects/object_tracker.hpp"
 
 namespace stillmap {
 namespace {

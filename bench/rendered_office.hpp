@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "simulation/synth/scene_names.hpp"
+#include "simulation/synth/sequence.hpp"
+#include "simulation/synth/sequence_writer.hpp"
 #include "stillmap/core/error.hpp"
-#include "stillmap/detections/detections_io.hpp"
-#include "stillmap/io/tum_sequence.hpp"
-#include "stillmap/synth/scene_names.hpp"
-#include "stillmap/synth/sequence.hpp"
-#include "stillmap/synth/sequence_writer.hpp"
+#include "stillmap/perception/detections/detections_io.hpp"
+#include "stillmap/sensor/tum_sequence.hpp"
 
 namespace stillmap {
 

@@ -10,10 +10,10 @@
 #include <benchmark/benchmark.h>
 #include <unistd.h>
 
-#include "stillmap/core/se3.hpp"
-#include "stillmap/place/place_index.hpp"
+#include "stillmap/geometry/se3.hpp"
 #include "stillmap/session/session_io.hpp"
-#include "stillmap/testing/simulated_world.hpp"
+#include "stillmap/slam/map/place_index.hpp"
+#include "tests/support/simulated_world.hpp"
 
 namespace stillmap {
 namespace {

@@ -3,14 +3,14 @@
 #include <benchmark/benchmark.h>
 
 #include "bench/rendered_office.hpp"
-#include "stillmap/core/se3.hpp"
-#include "stillmap/system/cloud_stage.hpp"
+#include "stillmap/dense/static_map.hpp"
+#include "stillmap/geometry/se3.hpp"
 
 namespace stillmap {
 namespace {
 
 /// People are not static.
-NotStatic people(std::uint32_t step) {
+DynamicRegions people(std::uint32_t step) {
   cv::Mat1b mask(office().camera().height_px, office().camera().width_px, std::uint8_t{0});
   const FrameDetections found = office().found(step);
   for (const DetectedObject& object : found.objects) {
@@ -20,10 +20,10 @@ NotStatic people(std::uint32_t step) {
 }
 
 void keep_view(benchmark::State& state) {
-  const CloudConfig config = CloudConfig{}.decided("full");
+  const CloudConfig config = CloudConfig{}.resolved_for("full");
   const cv::Mat2f rays = pixel_rays(office().camera());
   const FramePtr frame = office().frame(0);
-  const NotStatic masks = people(0);
+  const DynamicRegions masks = people(0);
   StaticView view;
   for (auto iteration : state) view = static_view(*frame, rays, config, masks, {});
   state.counters["points"] = static_cast<double>(view.cloud.size());
@@ -35,7 +35,7 @@ void keep_view(benchmark::State& state) {
 
 /// Views of one place, again and again: as many as a run keeps in 4 and in 20 seconds there.
 void assemble_static_map(benchmark::State& state) {
-  const CloudConfig config = CloudConfig{}.decided("full");
+  const CloudConfig config = CloudConfig{}.resolved_for("full");
   const cv::Mat2f rays = pixel_rays(office().camera());
   std::vector<StaticView> views;
   for (std::uint32_t k = 0; k < RenderedOffice::kFrames; ++k) {

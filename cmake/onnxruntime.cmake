@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # STILLMAP_ONNXRUNTIME_INCLUDE: the folder of ONNX Runtime's headers, the system's or those that
 # tools/fetch_models got; not found: the program is built without it. The folder is the one of
-# stillmap/segmentation/model_folder.hpp.
+# stillmap/perception/segmentation/model_folder.hpp.
 if(DEFINED ENV{STILLMAP_MODELS} AND NOT "$ENV{STILLMAP_MODELS}" STREQUAL "")
   set(stillmap_models $ENV{STILLMAP_MODELS})
 elseif(DEFINED ENV{XDG_DATA_HOME} AND NOT "$ENV{XDG_DATA_HOME}" STREQUAL "")

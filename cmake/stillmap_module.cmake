@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-# stillmap_module(NAME core SOURCES a.cpp HEADERS a.hpp USES other PRIVATE_LIBS lib PUBLIC_LIBS lib TESTS a_test.cpp
+# stillmap_module(NAME core USES other PUBLIC_LIBS lib PRIVATE_LIBS lib SOURCES generated.cpp PRIVATE_HEADERS a.hpp
 #   TEST_USES module TEST_LIBS lib)
-# One static library a module, stillmap::NAME, with one test program, NAME_test, beside it. A module
-# that is no part of the library is declared stillmap_module(NOT_INSTALLED NAME ...).
+#
+# One folder, one static library stillmap::NAME, one test program NAME_test: *_test.cpp are the tests, every other *.cpp
+# is the library; SOURCES adds what is generated. USES names the modules that the folder's files include; it is what
+# tools/check_layers.py checks. PRIVATE_HEADERS are for the folder's own files.
 
 add_library(stillmap_options INTERFACE)
 target_compile_features(stillmap_options INTERFACE cxx_std_20)
@@ -18,13 +20,41 @@ if(STILLMAP_SANITIZE)
 endif()
 install(TARGETS stillmap_options EXPORT stillmap)
 
+# The headers of other libraries that most files read are read once, for all modules together, and
+# once more with GoogleTest for all tests: docs/benchmarks.md has what that gives. The tidy preset
+# builds without, so that each file includes what it uses.
+function(stillmap_precompiled NAME)
+  file(WRITE ${PROJECT_BINARY_DIR}/precompiled/${NAME}.cpp.in "// Compiles nothing: its target holds precompiled headers.\n")
+  configure_file(${PROJECT_BINARY_DIR}/precompiled/${NAME}.cpp.in ${PROJECT_BINARY_DIR}/precompiled/${NAME}.cpp COPYONLY)
+  add_library(${NAME} OBJECT ${PROJECT_BINARY_DIR}/precompiled/${NAME}.cpp)
+  target_link_libraries(${NAME} PRIVATE stillmap_options Eigen3::Eigen opencv_core fmt::fmt Threads::Threads)
+  target_precompile_headers(${NAME} PRIVATE
+    <algorithm> <array> <cmath> <cstddef> <cstdint> <deque> <filesystem> <functional> <future> <map> <memory> <optional>
+    <set> <span> <string> <string_view> <thread> <utility> <vector>
+    <Eigen/Core> <Eigen/Geometry> <fmt/core.h> <opencv2/core/mat.hpp> ${ARGN})
+endfunction()
+stillmap_precompiled(stillmap_precompiled_library)
+if(STILLMAP_BUILD_TESTS)
+  stillmap_precompiled(stillmap_precompiled_tests <gmock/gmock.h> <gtest/gtest.h>)
+  target_link_libraries(stillmap_precompiled_tests PRIVATE GTest::gmock)
+endif()
+
+# An executable whose files read them: -fPIC as they were made with, not -fPIE.
+function(stillmap_use_precompiled TARGET NAME)
+  set_target_properties(${TARGET} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+  target_compile_options(${TARGET} PRIVATE -fPIC)
+  target_precompile_headers(${TARGET} REUSE_FROM ${NAME})
+endfunction()
+
 function(stillmap_tests NAME)
   cmake_parse_arguments(ARG "" "" "SOURCES;USES" ${ARGN})
   if(NOT STILLMAP_BUILD_TESTS OR NOT ARG_SOURCES)
     return()
   endif()
   add_executable(${NAME}_test ${ARG_SOURCES})
+  target_include_directories(${NAME}_test PRIVATE ${PROJECT_SOURCE_DIR})
   target_link_libraries(${NAME}_test PRIVATE stillmap_options ${ARG_USES} GTest::gmock GTest::gtest_main)
+  stillmap_use_precompiled(${NAME}_test stillmap_precompiled_tests)
   target_compile_definitions(${NAME}_test PRIVATE
     STILLMAP_SOURCE_DIR="${PROJECT_SOURCE_DIR}" STILLMAP_BINARY_DIR="${PROJECT_BINARY_DIR}")
   set_target_properties(${NAME}_test PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
@@ -33,18 +63,29 @@ function(stillmap_tests NAME)
 endfunction()
 
 function(stillmap_module)
-  cmake_parse_arguments(ARG "NOT_INSTALLED" "NAME" "SOURCES;HEADERS;USES;PUBLIC_LIBS;PRIVATE_LIBS;TESTS;TEST_USES;TEST_LIBS" ${ARGN})
+  cmake_parse_arguments(ARG "" "NAME" "USES;PUBLIC_LIBS;PRIVATE_LIBS;SOURCES;PRIVATE_HEADERS;TEST_USES;TEST_LIBS" ${ARGN})
   set(target stillmap_${ARG_NAME})
-  add_library(${target} STATIC ${ARG_SOURCES})
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  set(tests ${sources})
+  list(FILTER sources EXCLUDE REGEX "_test\\.cpp$")
+  list(FILTER tests INCLUDE REGEX "_test\\.cpp$")
+  list(TRANSFORM ARG_USES PREPEND stillmap::)
+  list(APPEND sources ${ARG_SOURCES})
+  if(sources)
+    add_library(${target} STATIC ${sources})
+    set(scope PUBLIC)
+    target_precompile_headers(${target} REUSE_FROM stillmap_precompiled_library)
+  else()
+    add_library(${target} INTERFACE)
+    set(scope INTERFACE)
+  endif()
   add_library(stillmap::${ARG_NAME} ALIAS ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${ARG_NAME})
-  target_sources(${target} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${ARG_HEADERS})
-  list(TRANSFORM ARG_USES PREPEND stillmap::)
-  target_link_libraries(${target}
-    PUBLIC stillmap_options ${ARG_USES} ${ARG_PUBLIC_LIBS} PRIVATE ${ARG_PRIVATE_LIBS})
-  if(NOT ARG_NOT_INSTALLED)
-    install(TARGETS ${target} EXPORT stillmap FILE_SET HEADERS ARCHIVE)
+  target_include_directories(${target} ${scope} $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
+  target_link_libraries(${target} ${scope} stillmap_options ${ARG_USES} ${ARG_PUBLIC_LIBS})
+  if(ARG_PRIVATE_LIBS)
+    target_link_libraries(${target} PRIVATE ${ARG_PRIVATE_LIBS})
   endif()
   list(TRANSFORM ARG_TEST_USES PREPEND stillmap::)
-  stillmap_tests(${ARG_NAME} SOURCES ${ARG_TESTS} USES stillmap::${ARG_NAME} ${ARG_TEST_USES} ${ARG_TEST_LIBS})
+  stillmap_tests(${ARG_NAME} SOURCES ${tests} USES stillmap::${ARG_NAME} ${ARG_TEST_USES} ${ARG_TEST_LIBS})
 endfunction()

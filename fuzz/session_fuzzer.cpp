@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "fuzz/session_mutator.hpp"
-#include "stillmap/cloud/free_space.hpp"
-#include "stillmap/cloud/global_cloud.hpp"
 #include "stillmap/core/error.hpp"
+#include "stillmap/dense/free_space.hpp"
+#include "stillmap/dense/global_cloud.hpp"
 #include "stillmap/session/session_io.hpp"
 #include "stillmap/session/session_map.hpp"
 
@@ -43,12 +43,12 @@ void assemble_cloud(const Session& session) {
 void use(const Session& session) {
   session.map.check_consistency();
   std::size_t frames = 0;
-  for (const WorldId world : session.map.worlds()) {
+  for (const SubmapId world : session.map.submaps()) {
     frames += trajectory_in(session, world).size();
     require(!keyframes_in(session, world).empty(), "a world has key frames");
   }
   require(frames == session.frames.size(), "each frame is in one world");
-  require(main_world(session).valid() == (frames > 0), "a main world");
+  require(main_submap(session).valid() == (frames > 0), "a main world");
   for (const auto& [id, keyframe] : session.map.keyframes()) {
     const Features& features = *keyframe.features;
     std::size_t all = 0;

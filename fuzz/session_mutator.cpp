@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "stillmap/session/test_sections.hpp"
+#include "tests/support/session_sections.hpp"
 
 namespace stillmap {
 namespace {

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/cli_fixture.hpp"
+#include "tests/support/cli_fixture.hpp"
 
 namespace stillmap {
 namespace {

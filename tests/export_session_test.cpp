@@ -4,14 +4,14 @@
 #include <gtest/gtest.h>
 
 #include "stillmap/config/config_io.hpp"
-#include "stillmap/formats/test_room.hpp"
 #include "stillmap/io/atomic_file.hpp"
-#include "stillmap/io/camera_io.hpp"
 #include "stillmap/io/ply.hpp"
 #include "stillmap/io/trajectory_io.hpp"
+#include "stillmap/sensor/camera_io.hpp"
 #include "stillmap/session/session_io.hpp"
-#include "stillmap/system/config.hpp"
-#include "tests/cli_fixture.hpp"
+#include "stillmap/session/system_config.hpp"
+#include "tests/support/cli_fixture.hpp"
+#include "tests/support/room.hpp"
 
 namespace stillmap {
 namespace {
@@ -26,9 +26,9 @@ class ExportSession : public Cli {
     config.dynamics.mode = "off";
     session_.config_yaml = dump_yaml(list_fields(config));
     session_.camera = room_.camera;
-    add_camera(WorldId(0), Eigen::Isometry3d::Identity(), elsewhere());
+    add_camera(SubmapId(0), Eigen::Isometry3d::Identity(), elsewhere());
     for (const Eigen::Isometry3d& pose : {room_.poses[0], room_.poses[3]}) {
-      add_camera(WorldId(2), pose, moved(room_.cloud, pose.inverse()));
+      add_camera(SubmapId(2), pose, moved(room_.cloud, pose.inverse()));
     }
     save();
   }
@@ -42,9 +42,11 @@ class ExportSession : public Cli {
     return cloud;
   }
 
-  void add_camera(WorldId world, const Eigen::Isometry3d& T_world_camera, const PointCloud& cloud) {
+  void add_camera(SubmapId world,
+                  const Eigen::Isometry3d& T_world_camera,
+                  const PointCloud& cloud) {
     Keyframe keyframe;
-    keyframe.world = world;
+    keyframe.submap = world;
     keyframe.T_world_camera = T_world_camera;
     keyframe.features = std::make_shared<const Features>();
     const auto number = static_cast<std::uint32_t>(session_.frames.size());

@@ -2,17 +2,17 @@
 // `stillmap export` from outside: what it writes, that other programs read it, and how it refuses.
 #include <sstream>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <octomap/OcTree.h>
 
-#include "stillmap/formats/test_room.hpp"
 #include "stillmap/io/atomic_file.hpp"
-#include "stillmap/io/camera_io.hpp"
 #include "stillmap/io/ply.hpp"
 #include "stillmap/io/trajectory_io.hpp"
-#include "tests/cli_fixture.hpp"
+#include "stillmap/sensor/camera_io.hpp"
+#include "tests/support/cli_fixture.hpp"
+#include "tests/support/room.hpp"
 
 namespace stillmap {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "stillmap/run/live_camera.hpp"
+#include "stillmap/sensor/live_camera.hpp"
 
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "tests/live_test_support.hpp"
+#include "tests/support/live_runs.hpp"
 
 namespace stillmap {
 namespace {

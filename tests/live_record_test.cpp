@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "stillmap/run/live_record.hpp"
+#include "tooling/pipeline/live_record.hpp"
 
 #include <string>
 #include <vector>
@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "stillmap/io/atomic_file.hpp"
-#include "tests/live_test_support.hpp"
+#include "tests/support/live_runs.hpp"
 
 namespace stillmap {
 namespace {

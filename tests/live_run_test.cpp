@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "stillmap/run/run_sequence.hpp"
-#include "tests/live_test_support.hpp"
+#include "tests/support/live_runs.hpp"
+#include "tooling/pipeline/run_sequence.hpp"
 
 namespace stillmap {
 namespace {

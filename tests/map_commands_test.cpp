@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is said and shown of maps: `stillmap evaluate map`, `evaluate residue`, `view`, and the
 // figures of `run` where a sequence comes with its true surfaces.
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "stillmap/core/se3.hpp"
+#include "stillmap/geometry/se3.hpp"
 #include "stillmap/io/image_io.hpp"
 #include "stillmap/io/ply.hpp"
 #include "stillmap/io/trajectory_io.hpp"
-#include "tests/cli_fixture.hpp"
-#include "tests/plane_sequence.hpp"
+#include "tests/support/cli_fixture.hpp"
+#include "tests/support/plane_sequence.hpp"
 
 namespace stillmap {
 namespace {

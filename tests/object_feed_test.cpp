@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "stillmap/run/object_feed.hpp"
+#include "tooling/pipeline/object_feed.hpp"
 
 #include <condition_variable>
 #include <memory>
@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "stillmap/core/error.hpp"
-#include "tests/live_test_support.hpp"
+#include "tests/support/live_runs.hpp"
 
 namespace stillmap {
 namespace {
@@ -49,9 +49,9 @@ FramePtr bare_frame(std::uint32_t i) {
   return frame;
 }
 
-std::vector<std::uint32_t> ids_of(const FeedStep& step) {
+std::vector<std::uint32_t> ids_of(const ObjectFeedStep& step) {
   std::vector<std::uint32_t> ids;
-  for (const LookedAtFrame& seen : step.arrived) {
+  for (const SegmentedFrame& seen : step.arrived) {
     ids.push_back(seen.frame->id.value);
     EXPECT_EQ(seen.detections.objects.at(0).score, static_cast<float>(seen.frame->stamp.seconds));
   }
@@ -59,9 +59,9 @@ std::vector<std::uint32_t> ids_of(const FeedStep& step) {
 }
 
 // Steps until the look has come in; a look that never does ends in the test's time limit.
-FeedStep step_until_arrival(NetworkFeed& feed, std::uint32_t frame) {
+ObjectFeedStep step_until_arrival(NetworkFeed& feed, std::uint32_t frame) {
   while (true) {
-    FeedStep step = feed.step(bare_frame(frame++), false);
+    ObjectFeedStep step = feed.step(bare_frame(frame++), false);
     if (!step.arrived.empty()) return step;
   }
 }
@@ -71,12 +71,12 @@ TEST(NetworkFeed, WaitsForNothingWhileTheNetworkLooks) {
   NetworkFeed feed(segmenter, 1);
   EXPECT_TRUE(feed.step(bare_frame(0), false).looking);
   for (std::uint32_t i = 1; i < 20; ++i) {
-    const FeedStep step = feed.step(bare_frame(i), false);
+    const ObjectFeedStep step = feed.step(bare_frame(i), false);
     EXPECT_TRUE(step.arrived.empty());
     EXPECT_FALSE(step.looking);
   }
   segmenter.let_through(1);
-  const FeedStep step = step_until_arrival(feed, 20);
+  const ObjectFeedStep step = step_until_arrival(feed, 20);
   EXPECT_EQ(ids_of(step), std::vector<std::uint32_t>{0});
   EXPECT_TRUE(step.looking);  // at the frame of that step
   segmenter.let_through(1);
@@ -100,7 +100,7 @@ TEST(NetworkFeed, WaitsForTheOwnOfAFrameThatNeedsThem) {
   segmenter.let_through(2);
   NetworkFeed feed(segmenter, 30);
   EXPECT_TRUE(feed.step(bare_frame(3), false).looking);
-  const FeedStep step = feed.step(bare_frame(4), true);
+  const ObjectFeedStep step = feed.step(bare_frame(4), true);
   EXPECT_FALSE(step.looking);
   EXPECT_EQ(step.arrived.back().frame->id, FrameId(4));
   EXPECT_EQ(ids_of(step).size(), 2U);  // and those of the look that was under way, first
@@ -133,15 +133,15 @@ TEST(RecordedFeed, GivesTheSameAtTheSameSteps) {
   const auto step = [&](std::uint32_t i, bool needs_own) {
     return feed.step(bare_frame(i), needs_own);
   };
-  const FeedStep first = step(0, true);
+  const ObjectFeedStep first = step(0, true);
   EXPECT_EQ(ids_of(first), std::vector<std::uint32_t>{0});
   EXPECT_FALSE(first.looking);
   EXPECT_TRUE(step(1, false).looking);
   EXPECT_FALSE(step(4, false).looking);
-  const FeedStep fourth = step(5, false);
+  const ObjectFeedStep fourth = step(5, false);
   EXPECT_EQ(ids_of(fourth), std::vector<std::uint32_t>{1});
   EXPECT_TRUE(fourth.looking);
-  const FeedStep last = step(6, true);
+  const ObjectFeedStep last = step(6, true);
   EXPECT_EQ(ids_of(last), (std::vector<std::uint32_t>{5, 6}));
   EXPECT_FALSE(last.looking);
 }

@@ -2,15 +2,15 @@
 // What `stillmap run` tells of objects: objects.jsonl, the map's labels, the report.
 #include <sstream>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "stillmap/io/image_io.hpp"
 #include "stillmap/io/ply.hpp"
-#include "tests/cli_fixture.hpp"
-#include "tests/plane_sequence.hpp"
+#include "tests/support/cli_fixture.hpp"
+#include "tests/support/plane_sequence.hpp"
 
 namespace stillmap {
 namespace {

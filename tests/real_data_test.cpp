@@ -2,10 +2,10 @@
 // Accuracy on a real sequence, where it is there: 12 s of TUM's freiburg1_xyz.
 #include <gtest/gtest.h>
 
-#include "stillmap/eval/ate.hpp"
-#include "stillmap/io/io_test_support.hpp"
 #include "stillmap/io/trajectory_io.hpp"
-#include "stillmap/run/run_sequence.hpp"
+#include "tests/support/image_files.hpp"
+#include "tooling/eval/ate.hpp"
+#include "tooling/pipeline/run_sequence.hpp"
 
 namespace stillmap {
 namespace {

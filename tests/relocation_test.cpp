@@ -8,9 +8,9 @@
 
 #include <gtest/gtest.h>
 
-#include "stillmap/core/se3.hpp"
-#include "stillmap/synth/detection_faults.hpp"
-#include "stillmap/synth/sequence.hpp"
+#include "simulation/synth/detection_faults.hpp"
+#include "simulation/synth/sequence.hpp"
+#include "stillmap/geometry/se3.hpp"
 #include "tests/relocation_trial.hpp"
 
 namespace stillmap {

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <numbers>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "stillmap/core/error.hpp"
-#include "stillmap/core/se3.hpp"
-#include "stillmap/eval/map_alignment.hpp"
+#include "stillmap/geometry/se3.hpp"
+#include "tooling/eval/map_alignment.hpp"
 
 namespace stillmap {
 

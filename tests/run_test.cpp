@@ -8,12 +8,12 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "stillmap/io/camera_io.hpp"
 #include "stillmap/io/image_io.hpp"
 #include "stillmap/io/ply.hpp"
 #include "stillmap/io/trajectory_io.hpp"
-#include "tests/cli_fixture.hpp"
-#include "tests/plane_sequence.hpp"
+#include "stillmap/sensor/camera_io.hpp"
+#include "tests/support/cli_fixture.hpp"
+#include "tests/support/plane_sequence.hpp"
 
 namespace stillmap {
 namespace {

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "stillmap/io/image_io.hpp"
-#include "tests/cli_fixture.hpp"
+#include "tests/support/cli_fixture.hpp"
 
 namespace stillmap {
 namespace {

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "stillmap/system/config.hpp"
-
 #include <memory>
 #include <string>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "apps/commands.hpp"
 #include "stillmap/config/config_io.hpp"
+#include "stillmap/session/system_config.hpp"
 
 namespace stillmap {
 

@@ -6,18 +6,18 @@
 #include <string>
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "apps/commands.hpp"
 #include "stillmap/core/error.hpp"
-#include "stillmap/eval/ate.hpp"
-#include "stillmap/eval/map_alignment.hpp"
-#include "stillmap/eval/metrics_json.hpp"
-#include "stillmap/eval/rpe.hpp"
-#include "stillmap/io/associate.hpp"
 #include "stillmap/io/trajectory_io.hpp"
-#include "stillmap/io/tum_sequence.hpp"
+#include "stillmap/sensor/associate.hpp"
+#include "stillmap/sensor/tum_sequence.hpp"
+#include "tooling/eval/ate.hpp"
+#include "tooling/eval/map_alignment.hpp"
+#include "tooling/eval/metrics_json.hpp"
+#include "tooling/eval/rpe.hpp"
 
 namespace stillmap {
 namespace {

@@ -5,14 +5,14 @@
 #include <string>
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "apps/commands.hpp"
 #include "apps/commands/evaluate.hpp"
-#include "stillmap/eval/map_files.hpp"
-#include "stillmap/eval/map_quality.hpp"
-#include "stillmap/eval/metrics_json.hpp"
+#include "tooling/eval/map_files.hpp"
+#include "tooling/eval/map_quality.hpp"
+#include "tooling/eval/metrics_json.hpp"
 
 namespace stillmap {
 namespace {

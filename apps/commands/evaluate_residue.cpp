@@ -6,19 +6,19 @@
 #include <string>
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "apps/commands.hpp"
 #include "apps/commands/evaluate.hpp"
 #include "stillmap/core/error.hpp"
-#include "stillmap/eval/map_files.hpp"
-#include "stillmap/eval/map_quality.hpp"
-#include "stillmap/eval/metrics_json.hpp"
-#include "stillmap/eval/pose_at.hpp"
-#include "stillmap/eval/see_through.hpp"
-#include "stillmap/io/camera_io.hpp"
-#include "stillmap/io/tum_sequence.hpp"
+#include "stillmap/sensor/camera_io.hpp"
+#include "stillmap/sensor/tum_sequence.hpp"
+#include "tooling/eval/map_files.hpp"
+#include "tooling/eval/map_quality.hpp"
+#include "tooling/eval/metrics_json.hpp"
+#include "tooling/eval/pose_at.hpp"
+#include "tooling/eval/see_through.hpp"
 
 namespace stillmap {
 namespace {

@@ -6,17 +6,18 @@
 #include <string>
 #include <vector>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "apps/commands.hpp"
 #include "apps/commands/export_source.hpp"
 #include "stillmap/core/error.hpp"
-#include "stillmap/formats/floor_plane.hpp"
-#include "stillmap/formats/occupancy_grid.hpp"
-#include "stillmap/formats/octree.hpp"
-#include "stillmap/formats/pcd.hpp"
+#include "stillmap/core/joined.hpp"
 #include "stillmap/io/atomic_file.hpp"
 #include "stillmap/io/ply.hpp"
+#include "tooling/export/floor_plane.hpp"
+#include "tooling/export/occupancy_grid.hpp"
+#include "tooling/export/octree.hpp"
+#include "tooling/export/pcd.hpp"
 
 namespace stillmap {
 namespace {
@@ -71,7 +72,7 @@ void check_arguments(const ExportArguments& arguments) {
       throw Error("{} {}: expected a name that ends in {}",
                   option.name,
                   file.string(),
-                  fmt::join(option.suffixes, " or "));
+                  joined(option.suffixes, " or "));
     }
     const fs::path target = fs::absolute(file).lexically_normal();
     if (std::ranges::find(targets, target) != targets.end()) {

@@ -3,12 +3,12 @@
 
 #include "stillmap/core/error.hpp"
 #include "stillmap/io/atomic_file.hpp"
-#include "stillmap/io/camera_io.hpp"
 #include "stillmap/io/ply.hpp"
 #include "stillmap/io/trajectory_io.hpp"
+#include "stillmap/sensor/camera_io.hpp"
+#include "stillmap/session/session_cloud.hpp"
 #include "stillmap/session/session_io.hpp"
 #include "stillmap/session/session_map.hpp"
-#include "stillmap/system/session_cloud.hpp"
 
 namespace stillmap {
 namespace {
@@ -46,12 +46,12 @@ FinishedRun read_folder(const fs::path& folder) {
 
 FinishedRun read_saved(const fs::path& file) {
   const Session session = read_session(file);
-  const WorldId world = main_world(session);
-  if (!world.valid()) throw Error("{}: no frame in it was tracked", file.string());
+  const SubmapId submap = main_submap(session);
+  if (!submap.valid()) throw Error("{}: no frame in it was tracked", file.string());
   FinishedRun run;
-  run.map = session_cloud(session, world, file.string());
+  run.map = session_cloud(session, submap, file.string());
   if (run.map.empty()) throw Error("{}: no points in it", file.string());
-  add_keyframes(run, keyframes_in(session, world));
+  add_keyframes(run, keyframes_in(session, submap));
   run.camera = session.camera;
   return run;
 }

@@ -8,8 +8,8 @@
 
 #include <Eigen/Geometry>
 
-#include "stillmap/core/camera.hpp"
 #include "stillmap/core/point_cloud.hpp"
+#include "stillmap/geometry/camera.hpp"
 
 namespace stillmap {
 
@@ -21,7 +21,7 @@ struct FinishedRun {
 };
 
 /// Reads a run's folder, or a saved session, whose map is made anew from its views: that of the
-/// world with most frames. `camera`: instead of the run's own, unless empty. Throws Error for what
+/// submap with most frames. `camera`: instead of the run's own, unless empty. Throws Error for what
 /// is neither, or lacks something.
 [[nodiscard]] FinishedRun read_finished_run(const std::filesystem::path& source,
                                             const std::string& camera,

@@ -3,12 +3,12 @@
 #include <optional>
 #include <string>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "apps/commands.hpp"
 #include "stillmap/core/error.hpp"
+#include "stillmap/session/merge_sessions.hpp"
 #include "stillmap/session/session_io.hpp"
-#include "stillmap/system/merge_sessions.hpp"
 
 namespace stillmap {
 namespace {

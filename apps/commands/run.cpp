@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "apps/commands.hpp"
 #include "apps/progress_bar.hpp"
@@ -13,17 +13,17 @@
 #include "stillmap/config/config_io.hpp"
 #include "stillmap/core/error.hpp"
 #include "stillmap/core/nearest_name.hpp"
-#include "stillmap/eval/ate.hpp"
-#include "stillmap/eval/rpe.hpp"
 #include "stillmap/io/atomic_file.hpp"
-#include "stillmap/io/camera_io.hpp"
 #include "stillmap/io/trajectory_io.hpp"
-#include "stillmap/report/time_summary.hpp"
-#include "stillmap/report/tracking_gaps.hpp"
-#include "stillmap/run/map_evaluation.hpp"
-#include "stillmap/run/run_folder.hpp"
-#include "stillmap/run/run_sequence.hpp"
+#include "stillmap/sensor/camera_io.hpp"
 #include "stillmap/session/session_io.hpp"
+#include "tooling/eval/ate.hpp"
+#include "tooling/eval/rpe.hpp"
+#include "tooling/pipeline/map_evaluation.hpp"
+#include "tooling/pipeline/run_folder.hpp"
+#include "tooling/pipeline/run_sequence.hpp"
+#include "tooling/report/time_summary.hpp"
+#include "tooling/report/tracking_gaps.hpp"
 #include "version.hpp"
 
 namespace stillmap {

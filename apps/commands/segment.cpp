@@ -9,16 +9,16 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "apps/commands.hpp"
 #include "apps/progress_bar.hpp"
+#include "stillmap/concurrency/parallel.hpp"
 #include "stillmap/core/error.hpp"
-#include "stillmap/core/ordered_parallel.hpp"
-#include "stillmap/detections/detections_io.hpp"
 #include "stillmap/io/image_io.hpp"
-#include "stillmap/io/tum_lists.hpp"
-#include "stillmap/segmentation/segmenter.hpp"
+#include "stillmap/perception/detections/detections_io.hpp"
+#include "stillmap/perception/segmentation/segmenter.hpp"
+#include "stillmap/sensor/tum_lists.hpp"
 
 namespace stillmap {
 namespace {

@@ -10,16 +10,16 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
-#include <fmt/ranges.h>
+#include <fmt/core.h>
 
 #include "apps/commands.hpp"
 #include "apps/picture_size.hpp"
 #include "apps/progress_bar.hpp"
+#include "simulation/synth/scene_names.hpp"
+#include "simulation/synth/sequence_writer.hpp"
 #include "stillmap/core/error.hpp"
+#include "stillmap/core/joined.hpp"
 #include "stillmap/core/nearest_name.hpp"
-#include "stillmap/synth/scene_names.hpp"
-#include "stillmap/synth/sequence_writer.hpp"
 
 namespace stillmap {
 namespace {
@@ -132,7 +132,7 @@ void add_synth_command(CLI::App& app, CommandResult&) {
   command->add_option("OUT", arguments->out, "new or empty folder for the sequence")->required();
   command
       ->add_option(
-          "--scene", arguments->scene, fmt::format("one of: {}", fmt::join(scene_names(), ", ")))
+          "--scene", arguments->scene, fmt::format("one of: {}", joined(scene_names(), ", ")))
       ->required();
   command->add_option("--frames", arguments->frames, "number of frames, at 30 a second")
       ->check(CLI::Range(std::size_t{1}, std::size_t{100000}));
@@ -142,10 +142,10 @@ void add_synth_command(CLI::App& app, CommandResult&) {
   command->add_option("--size", arguments->size, "WIDTHxHEIGHT in pixels")->capture_default_str();
   command->add_flag(
       "--clean", arguments->clean, "a perfect sensor: no noise, blur, drift or missing depth");
-  command->add_option("--without",
-                      arguments->without,
-                      fmt::format("switches one effect off, repeatable; one of: {}",
-                                  fmt::join(effect_names(), ", ")));
+  command->add_option(
+      "--without",
+      arguments->without,
+      fmt::format("switches one effect off, repeatable; one of: {}", joined(effect_names(), ", ")));
   command
       ->add_option("--detections",
                    arguments->detections,

@@ -10,18 +10,18 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "apps/commands.hpp"
 #include "apps/picture_size.hpp"
 #include "stillmap/core/error.hpp"
 #include "stillmap/core/nearest_name.hpp"
-#include "stillmap/eval/map_alignment.hpp"
-#include "stillmap/eval/map_files.hpp"
 #include "stillmap/io/atomic_file.hpp"
 #include "stillmap/io/image_io.hpp"
 #include "stillmap/io/trajectory_io.hpp"
-#include "stillmap/report/map_views.hpp"
+#include "tooling/eval/map_alignment.hpp"
+#include "tooling/eval/map_files.hpp"
+#include "tooling/report/map_views.hpp"
 
 namespace stillmap {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "stillmap/features/descriptor.hpp"
-#include "stillmap/place/place_index.hpp"
+#include "stillmap/slam/features/descriptor.hpp"
+#include "stillmap/slam/map/place_index.hpp"
 
 namespace stillmap {
 

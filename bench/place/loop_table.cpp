@@ -5,12 +5,12 @@
 #include <chrono>
 #include <map>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "bench/place/views.hpp"
 #include "stillmap/core/error.hpp"
-#include "stillmap/features/orb_extractor.hpp"
-#include "stillmap/loop/loop_verifier.hpp"
+#include "stillmap/slam/features/orb_extractor.hpp"
+#include "stillmap/slam/loop/loop_verifier.hpp"
 
 namespace stillmap {
 namespace {

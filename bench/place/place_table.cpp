@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <map>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "bench/place/designs.hpp"
 #include "bench/place/views.hpp"

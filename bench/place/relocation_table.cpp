@@ -9,20 +9,20 @@
 #include <cstdlib>
 #include <numbers>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <opencv2/core/utility.hpp>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "stillmap/core/error.hpp"
 #include "stillmap/core/random.hpp"
-#include "stillmap/core/se3.hpp"
-#include "stillmap/detections/detections_io.hpp"
-#include "stillmap/eval/pose_at.hpp"
-#include "stillmap/io/camera_io.hpp"
+#include "stillmap/geometry/se3.hpp"
 #include "stillmap/io/trajectory_io.hpp"
-#include "stillmap/io/tum_sequence.hpp"
+#include "stillmap/perception/detections/detections_io.hpp"
+#include "stillmap/sensor/camera_io.hpp"
+#include "stillmap/sensor/tum_sequence.hpp"
 #include "tests/relocation_trial.hpp"
+#include "tooling/eval/pose_at.hpp"
 
 namespace stillmap {
 namespace {

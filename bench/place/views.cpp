@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "stillmap/core/error.hpp"
-#include "stillmap/features/orb_extractor.hpp"
 #include "stillmap/io/trajectory_io.hpp"
-#include "stillmap/io/tum_sequence.hpp"
+#include "stillmap/sensor/tum_sequence.hpp"
+#include "stillmap/slam/features/orb_extractor.hpp"
 
 namespace stillmap {
 namespace {

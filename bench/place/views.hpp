@@ -6,8 +6,8 @@
 
 #include <Eigen/Geometry>
 
-#include "stillmap/core/camera.hpp"
-#include "stillmap/features/features.hpp"
+#include "stillmap/geometry/camera.hpp"
+#include "stillmap/slam/features/features.hpp"
 
 namespace stillmap {
 

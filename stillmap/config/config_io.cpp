@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "stillmap/config/field_keys.hpp"
 #include "stillmap/config/field_text.hpp"

@@ -13,8 +13,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "stillmap/config/test_config.hpp"
 #include "stillmap/core/error.hpp"
+#include "tests/support/sample_config.hpp"
 
 namespace stillmap {
 namespace {

@@ -9,10 +9,10 @@
 #include <optional>
 #include <type_traits>
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
+#include <fmt/core.h>
 
 #include "stillmap/core/error.hpp"
+#include "stillmap/core/joined.hpp"
 
 namespace stillmap {
 namespace {
@@ -132,7 +132,7 @@ std::string format_value(const FieldRef& field) {
 }
 
 std::string allowed_values(const FieldRef& field) {
-  if (is_text(field)) return fmt::format("{}", fmt::join(field.info.choices, ", "));
+  if (is_text(field)) return joined(field.info.choices, ", ");
   if (std::holds_alternative<bool*>(field.value)) return "true, false";
   return allowed_numbers(field);
 }

@@ -10,8 +10,8 @@
 #include <unistd.h>
 
 #include "stillmap/config/config_io.hpp"
-#include "stillmap/config/test_config.hpp"
 #include "stillmap/core/error.hpp"
+#include "tests/support/sample_config.hpp"
 
 namespace stillmap {
 namespace {

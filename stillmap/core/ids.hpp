@@ -29,7 +29,7 @@ using FrameId = Id<struct FrameTag>;
 using KeyframeId = Id<struct KeyframeTag>;
 using LandmarkId = Id<struct LandmarkTag>;
 /// A coordinate frame that key frames share. Tracking that was lost for long begins another.
-using WorldId = Id<struct WorldTag>;
+using SubmapId = Id<struct SubmapTag>;
 
 }  // namespace stillmap
 

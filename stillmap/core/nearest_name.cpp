@@ -5,8 +5,9 @@
 #include <numeric>
 #include <vector>
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
+#include <fmt/core.h>
+
+#include "stillmap/core/joined.hpp"
 
 namespace stillmap {
 namespace {
@@ -34,7 +35,7 @@ std::string name_hint(std::string_view misspelt, std::span<const std::string> kn
   if (edit_distance(misspelt, *nearest) <= std::max<std::size_t>(1, (nearest->size() + 1) / 3)) {
     return fmt::format("did you mean '{}'?", *nearest);
   }
-  return fmt::format("known: {}", fmt::join(known, ", "));
+  return fmt::format("known: {}", joined(known, ", "));
 }
 
 }  // namespace stillmap

@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "stillmap/core/error.hpp"
-#include "stillmap/io/io_test_support.hpp"
+#include "tests/support/image_files.hpp"
 
 namespace stillmap {
 namespace {

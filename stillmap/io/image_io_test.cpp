@@ -14,8 +14,8 @@
 #include <png.h>
 
 #include "stillmap/io/atomic_file.hpp"
-#include "stillmap/io/io_test_support.hpp"
 #include "stillmap/io/png_codec.hpp"
+#include "tests/support/image_files.hpp"
 
 namespace stillmap {
 namespace {

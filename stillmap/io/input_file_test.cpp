@@ -6,7 +6,7 @@
 
 #include "stillmap/core/error.hpp"
 #include "stillmap/io/atomic_file.hpp"
-#include "stillmap/io/io_test_support.hpp"
+#include "tests/support/image_files.hpp"
 
 namespace stillmap {
 namespace {

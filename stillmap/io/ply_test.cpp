@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "stillmap/io/atomic_file.hpp"
-#include "stillmap/io/io_test_support.hpp"
+#include "tests/support/image_files.hpp"
 
 namespace stillmap {
 namespace {

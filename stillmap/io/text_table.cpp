@@ -55,7 +55,7 @@ TextTable::TextTable(std::string path, std::string text, std::string_view layout
     if (row.columns.size() != expected) {
       throw Error("{}: {} columns, expected {}: {}",
                   place(row),
-                  row.columns.size() > expected ? "more" : fmt::to_string(row.columns.size()),
+                  row.columns.size() > expected ? "more" : std::to_string(row.columns.size()),
                   expected,
                   layout);
     }

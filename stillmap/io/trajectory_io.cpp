@@ -5,10 +5,10 @@
 #include <cmath>
 #include <iterator>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "stillmap/core/error.hpp"
-#include "stillmap/core/se3.hpp"
+#include "stillmap/geometry/se3.hpp"
 #include "stillmap/io/text_table.hpp"
 
 namespace stillmap {

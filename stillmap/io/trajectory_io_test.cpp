@@ -4,9 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "stillmap/core/se3.hpp"
+#include "stillmap/geometry/se3.hpp"
 #include "stillmap/io/atomic_file.hpp"
-#include "stillmap/io/io_test_support.hpp"
+#include "tests/support/image_files.hpp"
 
 namespace stillmap {
 namespace {

@@ -7,11 +7,11 @@ namespace stillmap {
 namespace {
 
 struct Offsets {
-  std::uint32_t keyframe, landmark, world, frame;
+  std::uint32_t keyframe, landmark, submap, frame;
 };
 
-std::uint32_t end_of(std::span<const WorldId> worlds) {
-  return worlds.empty() ? 0 : worlds.back().value + 1;
+std::uint32_t end_of(std::span<const SubmapId> submaps) {
+  return submaps.empty() ? 0 : submaps.back().value + 1;
 }
 
 // Of numbers that are no greater than kMaxId.
@@ -28,7 +28,7 @@ Id<Tag> shifted(Id<Tag> id, std::uint32_t offset) {
 
 Keyframe shifted(Keyframe keyframe, const Offsets& by) {
   keyframe.id = shifted(keyframe.id, by.keyframe);
-  keyframe.world = shifted(keyframe.world, by.world);
+  keyframe.submap = shifted(keyframe.submap, by.submap);
   for (LandmarkId& id : keyframe.landmarks) id = shifted(id, by.landmark);
   return keyframe;
 }
@@ -63,11 +63,11 @@ Session appended(const Session& first, const Session& second) {
   const MapParts parts = first.map.parts(), others = second.map.parts();
   const Offsets by{parts.next_keyframe.value,
                    parts.next_landmark.value,
-                   end_of(first.map.worlds()),
+                   end_of(first.map.submaps()),
                    static_cast<std::uint32_t>(first.frames.size())};
   check_sum(by.keyframe, others.next_keyframe.value);
   check_sum(by.landmark, others.next_landmark.value);
-  check_sum(by.world, end_of(second.map.worlds()));
+  check_sum(by.submap, end_of(second.map.submaps()));
   check_sum(by.frame, static_cast<std::uint32_t>(second.frames.size()));
   Session both = first;
   both.map = Map::from_parts(appended(parts, others, by), "the sessions together");

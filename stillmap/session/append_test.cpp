@@ -6,7 +6,7 @@
 
 #include "stillmap/core/error.hpp"
 #include "stillmap/session/session_map.hpp"
-#include "stillmap/session/test_session.hpp"
+#include "tests/support/sessions.hpp"
 
 namespace stillmap {
 namespace {
@@ -15,7 +15,8 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-// Each has key frames 0 to 5, of which 2 and 3 are dropped, in the worlds 0 and 2, and nine frames.
+// Each has key frames 0 to 5, of which 2 and 3 are dropped, in the submaps 0 and 2, and nine
+// frames.
 class Append : public testing::Test {
  protected:
   static Session second_session() {
@@ -50,7 +51,7 @@ TEST_F(Append, KeepsTheFirstAsItIs) {
 TEST_F(Append, KeyFramesOfTheSecondFollow) {
   both_.map.check_consistency();
   EXPECT_EQ(both_.map.keyframes().size(), 8U);
-  EXPECT_THAT(both_.map.worlds(), ElementsAre(WorldId(0), WorldId(2), WorldId(3), WorldId(5)));
+  EXPECT_THAT(both_.map.submaps(), ElementsAre(SubmapId(0), SubmapId(2), SubmapId(3), SubmapId(5)));
   for (const auto& [id, before] : second_.map.keyframes()) {
     Keyframe after = both_.map.keyframe(KeyframeId(id.value + 6));
     for (std::size_t i = 0; i < after.landmarks.size(); ++i) {
@@ -61,9 +62,9 @@ TEST_F(Append, KeyFramesOfTheSecondFollow) {
       }
     }
     EXPECT_EQ(after.id.value, id.value + 6);
-    EXPECT_EQ(after.world.value, before.world.value + 3);
+    EXPECT_EQ(after.submap.value, before.submap.value + 3);
     after.id = id;
-    after.world = before.world;
+    after.submap = before.submap;
     after.landmarks = before.landmarks;
     expect_same(after, before);
   }
@@ -94,7 +95,7 @@ TEST_F(Append, NewOnesComeAfterAll) {
   Map map = both_.map;
   std::mt19937 rng(3);
   Keyframe keyframe = random_keyframe(rng);
-  keyframe.world = WorldId(5);
+  keyframe.submap = SubmapId(5);
   const KeyframeId id = map.add_keyframe(std::move(keyframe));
   EXPECT_EQ(id, KeyframeId(12));
   EXPECT_FALSE(map.keyframe(id).is_origin);
@@ -109,7 +110,7 @@ TEST_F(Append, FramesAndViewsOfTheSecondStandWhereTheyStood) {
     EXPECT_EQ(after.stamp.text, before.stamp.text);
     EXPECT_EQ(after.stamp.seconds, before.stamp.seconds);
     EXPECT_EQ(T_world_frame(both_, after).matrix(), T_world_frame(second_, before).matrix());
-    EXPECT_EQ(world_of(both_, after).value, world_of(second_, before).value + 3);
+    EXPECT_EQ(submap_of(both_, after).value, submap_of(second_, before).value + 3);
   }
   ASSERT_EQ(both_.views.size(), first_.views.size() + second_.views.size());
   for (std::size_t i = 0; i < second_.views.size(); ++i) {
@@ -165,18 +166,18 @@ TEST(AppendLimits, MoreThanIdsCanCountAreRefused) {
   EXPECT_EQ(full.map.parts().next_landmark, LandmarkId(kAll));
 }
 
-TEST(AppendLimits, WorldsCountToo) {
-  const auto with_world = [](std::uint32_t world) {
+TEST(AppendLimits, SubmapsCountToo) {
+  const auto with_submap = [](std::uint32_t submap) {
     Keyframe keyframe;
     keyframe.features = std::make_shared<const Features>();
-    keyframe.world = WorldId(world);
+    keyframe.submap = SubmapId(submap);
     Session session = counted_to(0, 0);
     session.map.add_keyframe(std::move(keyframe));
     return session;
   };
-  const Session last = with_world((std::uint32_t{1} << 31U) - 1);
-  EXPECT_THROW((void)appended(last, with_world(0)), Error);
-  EXPECT_EQ(appended(last, counted_to(0, 0)).map.worlds(), last.map.worlds());
+  const Session last = with_submap((std::uint32_t{1} << 31U) - 1);
+  EXPECT_THROW((void)appended(last, with_submap(0)), Error);
+  EXPECT_EQ(appended(last, counted_to(0, 0)).map.submaps(), last.map.submaps());
 }
 
 }  // namespace

@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "stillmap/map/map_parts.hpp"
 #include "stillmap/session/bytes.hpp"
 #include "stillmap/session/session.hpp"
+#include "stillmap/slam/map/map_parts.hpp"
 
 namespace stillmap {
 

@@ -39,8 +39,8 @@ TEST(SessionCorpus, IsReadOrRefusedWithOneLine) {
       const Session session = decode_session(bytes, "x");
       session.map.check_consistency();
       EXPECT_EQ(encode_session(session), bytes);
-      for (const WorldId world : session.map.worlds()) {
-        EXPECT_LE(trajectory_in(session, world).size(), session.frames.size());
+      for (const SubmapId submap : session.map.submaps()) {
+        EXPECT_LE(trajectory_in(session, submap).size(), session.frames.size());
       }
     } catch (const Error& error) {
       EXPECT_FALSE(is_valid) << error.what();

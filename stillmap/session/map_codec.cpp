@@ -107,7 +107,7 @@ ByteWriter encode(const Keyframe& keyframe) {
   ByteWriter out;
   out.number(keyframe.id.value);
   out.number(keyframe.frame.value);
-  out.number(keyframe.world.value);
+  out.number(keyframe.submap.value);
   out.flag(keyframe.is_origin);
   put(out, keyframe.stamp);
   out.pose(keyframe.T_world_camera);
@@ -119,7 +119,7 @@ Keyframe decode_keyframe(ByteReader content, const CameraModel& camera) {
   Keyframe keyframe;
   keyframe.id = take_id<KeyframeId>(content);
   keyframe.frame = take_id<FrameId>(content);
-  keyframe.world = take_id<WorldId>(content);
+  keyframe.submap = take_id<SubmapId>(content);
   keyframe.is_origin = content.flag();
   keyframe.stamp = take_stamp(content);
   keyframe.T_world_camera = content.pose();

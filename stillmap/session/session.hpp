@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "stillmap/cloud/static_view.hpp"
-#include "stillmap/core/camera.hpp"
 #include "stillmap/core/trajectory.hpp"
-#include "stillmap/map/map.hpp"
-#include "stillmap/pose_graph/essential_graph.hpp"
+#include "stillmap/dense/static_view.hpp"
+#include "stillmap/geometry/camera.hpp"
+#include "stillmap/slam/loop/essential_graph.hpp"
+#include "stillmap/slam/map/map.hpp"
 
 namespace stillmap {
 

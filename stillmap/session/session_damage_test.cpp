@@ -9,8 +9,8 @@
 
 #include "stillmap/core/error.hpp"
 #include "stillmap/session/session_io.hpp"
-#include "stillmap/session/test_sections.hpp"
-#include "stillmap/session/test_session.hpp"
+#include "tests/support/session_sections.hpp"
+#include "tests/support/sessions.hpp"
 
 namespace stillmap {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "stillmap/core/error.hpp"
 #include "stillmap/io/atomic_file.hpp"
-#include "stillmap/io/camera_io.hpp"
 #include "stillmap/io/input_file.hpp"
+#include "stillmap/sensor/camera_io.hpp"
 #include "stillmap/session/codec.hpp"
 #include "stillmap/session/sections.hpp"
 #include "stillmap/session/session_parts.hpp"

@@ -9,9 +9,9 @@
 
 #include "stillmap/core/error.hpp"
 #include "stillmap/io/atomic_file.hpp"
-#include "stillmap/io/io_test_support.hpp"
-#include "stillmap/session/test_sections.hpp"
-#include "stillmap/session/test_session.hpp"
+#include "tests/support/image_files.hpp"
+#include "tests/support/session_sections.hpp"
+#include "tests/support/sessions.hpp"
 
 namespace stillmap {
 namespace {

@@ -8,23 +8,23 @@
 
 namespace stillmap {
 
-/// Pose of a frame in its world, as the key frames are now.
+/// Pose of a frame in its submap, as the key frames are now.
 [[nodiscard]] Eigen::Isometry3d T_world_frame(const Session& session, const FrameRecord& frame);
 
-/// The world of a frame: that of its key frame, or of what a dropped one is fixed to.
-[[nodiscard]] WorldId world_of(const Session& session, const FrameRecord& frame);
+/// The submap of a frame: that of its key frame, or of what a dropped one is fixed to.
+[[nodiscard]] SubmapId submap_of(const Session& session, const FrameRecord& frame);
 
-/// The world with most of the frames from `first_frame` on, the lowest of equals; invalid when
+/// The submap with most of the frames from `first_frame` on, the lowest of equals; invalid when
 /// there are no such frames.
-[[nodiscard]] WorldId main_world(const Session& session, std::size_t first_frame = 0);
+[[nodiscard]] SubmapId main_submap(const Session& session, std::size_t first_frame = 0);
 
-/// Poses of the frames from `first_frame` on that are in a world, in the order in which they were
+/// Poses of the frames from `first_frame` on that are in a submap, in the order in which they were
 /// tracked. Their stamps increase within what one run has added.
 [[nodiscard]] Trajectory trajectory_in(const Session& session,
-                                       WorldId world,
+                                       SubmapId submap,
                                        std::size_t first_frame = 0);
 
-/// Poses of the key frames of a world, by id.
-[[nodiscard]] Trajectory keyframes_in(const Session& session, WorldId world);
+/// Poses of the key frames of a submap, by id.
+[[nodiscard]] Trajectory keyframes_in(const Session& session, SubmapId submap);
 
 }  // namespace stillmap

@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "stillmap/core/se3.hpp"
+#include "stillmap/geometry/se3.hpp"
 
 namespace stillmap {
 namespace {
@@ -29,7 +29,7 @@ Eigen::Isometry3d quarter_turn_at(double x) {
   return make_pose(Eigen::Quaterniond(std::cos(half), 0, 0, std::sin(half)), {x, 0, 0});
 }
 
-// Key frames 0 (world 0), 1 (world 3), 2 (world 3, dropped, fixed to 1), 3 (world 0).
+// Key frames 0 (submap 0), 1 (submap 3), 2 (submap 3, dropped, fixed to 1), 3 (submap 0).
 class SessionMap : public testing::Test {
  protected:
   SessionMap() {
@@ -40,9 +40,9 @@ class SessionMap : public testing::Test {
     session_.map.remove_keyframe(KeyframeId(2), KeyframeId(1));
   }
 
-  void add_keyframe(std::uint32_t world, const Eigen::Isometry3d& T_world_camera) {
+  void add_keyframe(std::uint32_t submap, const Eigen::Isometry3d& T_world_camera) {
     Keyframe keyframe;
-    keyframe.world = WorldId(world);
+    keyframe.submap = SubmapId(submap);
     keyframe.stamp = stamp(static_cast<int>(session_.map.keyframes().size()) * 100);
     keyframe.T_world_camera = T_world_camera;
     keyframe.features = std::make_shared<const Features>();
@@ -67,12 +67,12 @@ TEST_F(SessionMap, FrameStandsWhereItsKeyFrameIs) {
   add_frame(1, at(0.5));
   const Eigen::Isometry3d T = T_world_frame(session_, session_.frames[0]);
   EXPECT_TRUE(T.translation().isApprox(Eigen::Vector3d(10, 0.5, 0), 1e-12));
-  EXPECT_EQ(world_of(session_, session_.frames[0]), WorldId(3));
+  EXPECT_EQ(submap_of(session_, session_.frames[0]), SubmapId(3));
 }
 
 TEST_F(SessionMap, FrameOfADroppedKeyFrameMovesWithItsAnchor) {
   add_frame(2, at(0, 0, 1));
-  EXPECT_EQ(world_of(session_, session_.frames[0]), WorldId(3));
+  EXPECT_EQ(submap_of(session_, session_.frames[0]), SubmapId(3));
   EXPECT_TRUE(T_world_frame(session_, session_.frames[0])
                   .translation()
                   .isApprox(Eigen::Vector3d(10, 5, 1), 1e-12));
@@ -83,32 +83,32 @@ TEST_F(SessionMap, FrameOfADroppedKeyFrameMovesWithItsAnchor) {
                   .isApprox(Eigen::Vector3d(25, 0, 1), 1e-12));
 }
 
-TEST_F(SessionMap, MainWorldHasMostFrames) {
-  EXPECT_FALSE(main_world(session_).valid());
+TEST_F(SessionMap, MainSubmapHasMostFrames) {
+  EXPECT_FALSE(main_submap(session_).valid());
   add_frame(0, at(0));
   add_frame(3, at(0));
   add_frame(1, at(0));
-  EXPECT_EQ(main_world(session_), WorldId(0));
+  EXPECT_EQ(main_submap(session_), SubmapId(0));
   add_frame(2, at(0));
-  EXPECT_EQ(main_world(session_), WorldId(0));  // two each: the lowest
-  EXPECT_EQ(main_world(session_, 1), WorldId(3));
-  EXPECT_FALSE(main_world(session_, 4).valid());
-  EXPECT_FALSE(main_world(session_, 5).valid());
+  EXPECT_EQ(main_submap(session_), SubmapId(0));  // two each: the lowest
+  EXPECT_EQ(main_submap(session_, 1), SubmapId(3));
+  EXPECT_FALSE(main_submap(session_, 4).valid());
+  EXPECT_FALSE(main_submap(session_, 5).valid());
 }
 
-TEST_F(SessionMap, TrajectoriesAreOfOneWorld) {
+TEST_F(SessionMap, TrajectoriesAreOfOneSubmap) {
   add_frame(0, at(0.25));
   add_frame(1, at(0));
   add_frame(3, at(0));
   add_frame(2, at(0));
-  EXPECT_THAT(stamps(trajectory_in(session_, WorldId(0))), ElementsAre("0", "2"));
-  EXPECT_THAT(stamps(trajectory_in(session_, WorldId(0), 1)), ElementsAre("2"));
-  EXPECT_THAT(stamps(trajectory_in(session_, WorldId(3))), ElementsAre("1", "3"));
-  EXPECT_TRUE(trajectory_in(session_, WorldId{}).empty());
-  EXPECT_EQ(trajectory_in(session_, WorldId(0))[0].T_world_camera.translation().x(), 1.25);
-  EXPECT_THAT(stamps(keyframes_in(session_, WorldId(0))), ElementsAre("0", "300"));
-  EXPECT_THAT(stamps(keyframes_in(session_, WorldId(3))), ElementsAre("100"));
-  EXPECT_EQ(keyframes_in(session_, WorldId(0))[1].T_world_camera.translation().x(), 2);
+  EXPECT_THAT(stamps(trajectory_in(session_, SubmapId(0))), ElementsAre("0", "2"));
+  EXPECT_THAT(stamps(trajectory_in(session_, SubmapId(0), 1)), ElementsAre("2"));
+  EXPECT_THAT(stamps(trajectory_in(session_, SubmapId(3))), ElementsAre("1", "3"));
+  EXPECT_TRUE(trajectory_in(session_, SubmapId{}).empty());
+  EXPECT_EQ(trajectory_in(session_, SubmapId(0))[0].T_world_camera.translation().x(), 1.25);
+  EXPECT_THAT(stamps(keyframes_in(session_, SubmapId(0))), ElementsAre("0", "300"));
+  EXPECT_THAT(stamps(keyframes_in(session_, SubmapId(3))), ElementsAre("100"));
+  EXPECT_EQ(keyframes_in(session_, SubmapId(0))[1].T_world_camera.translation().x(), 2);
 }
 
 }  // namespace

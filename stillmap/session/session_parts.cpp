@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "stillmap/core/error.hpp"
-#include "stillmap/io/camera_io.hpp"
+#include "stillmap/sensor/camera_io.hpp"
 
 namespace stillmap {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "stillmap/map/map_parts.hpp"
 #include "stillmap/session/session.hpp"
+#include "stillmap/slam/map/map_parts.hpp"
 
 namespace stillmap {
 

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "stillmap/system/dynamics_stage.hpp"
-#include "stillmap/tracking/tracked_frame.hpp"
+#include "stillmap/perception/motion/dynamics_stage.hpp"
+#include "stillmap/slam/tracking/tracked_frame.hpp"
 
 namespace stillmap {
 

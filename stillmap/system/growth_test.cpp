@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <vector>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
-#include "stillmap/eval/ate.hpp"
-#include "stillmap/eval/map_quality.hpp"
-#include "stillmap/synth/sequence.hpp"
+#include "simulation/synth/sequence.hpp"
 #include "stillmap/system/system.hpp"
+#include "tooling/eval/ate.hpp"
+#include "tooling/eval/map_quality.hpp"
 
 namespace stillmap {
 namespace {

@@ -7,15 +7,15 @@
 
 #include <gtest/gtest.h>
 
+#include "simulation/synth/sequence.hpp"
 #include "stillmap/config/config_io.hpp"
-#include "stillmap/eval/ate.hpp"
-#include "stillmap/eval/statistics.hpp"
-#include "stillmap/io/io_test_support.hpp"
+#include "stillmap/session/merge_sessions.hpp"
 #include "stillmap/session/session_io.hpp"
 #include "stillmap/session/session_map.hpp"
-#include "stillmap/synth/sequence.hpp"
-#include "stillmap/system/merge_sessions.hpp"
 #include "stillmap/system/system.hpp"
+#include "tests/support/image_files.hpp"
+#include "tooling/eval/ate.hpp"
+#include "tooling/eval/statistics.hpp"
 
 namespace stillmap {
 namespace {
@@ -171,7 +171,7 @@ TEST(SavedSession, IsGoneOnFrom) {
   EXPECT_GT(result.map.size(), before.result.map.size());
   EXPECT_LT(error_m(result.trajectory), 0.05);
   const Session session = saved(system);
-  EXPECT_EQ(session.map.worlds().size(), 1U);
+  EXPECT_EQ(session.map.submaps().size(), 1U);
   EXPECT_EQ(session.frames.size(), 60U + 50U);
 }
 
@@ -188,8 +188,8 @@ TEST(MergedSessions, AreOneRoom) {
   ASSERT_TRUE(merged);
   EXPECT_GE(merged->loops, 1U);
   merged->session.map.check_consistency();
-  EXPECT_EQ(merged->session.map.worlds().size(), 1U);
-  const WorldId world = main_world(merged->session);
+  EXPECT_EQ(merged->session.map.submaps().size(), 1U);
+  const SubmapId world = main_submap(merged->session);
   const Trajectory older = trajectory_in(merged->session, world, 0);
   ASSERT_EQ(older.size(), 180U + 130U);
   // Each half has its own poses of the frames that both have; together they are one trajectory.
@@ -217,7 +217,7 @@ TEST(Worlds, AreJoinedWhenAKnownPlaceIsSeenAgain) {
   EXPECT_EQ(result.frames_elsewhere, 0U);
   EXPECT_EQ(result.trajectory.size(), 60U + 130U);
   EXPECT_EQ(result.loops.size(), 1U);
-  EXPECT_EQ(system.map().worlds().size(), 1U);
+  EXPECT_EQ(system.map().submaps().size(), 1U);
   EXPECT_LT(error_m(result.trajectory), 0.04);
 }
 
@@ -230,7 +230,7 @@ TEST(Worlds, StayApartWithoutOne) {
   EXPECT_EQ(result.frames_elsewhere, 30U);
   EXPECT_EQ(result.trajectory.size(), 60U);  // of the world that has most frames
   EXPECT_TRUE(result.loops.empty());
-  EXPECT_EQ(system.map().worlds().size(), 2U);
+  EXPECT_EQ(system.map().submaps().size(), 2U);
 }
 
 }  // namespace

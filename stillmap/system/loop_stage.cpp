@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stillmap/system/loop_stage.hpp"
 
-#include "stillmap/loop_closing/loop_closer.hpp"
+#include "stillmap/slam/loop/loop_closer.hpp"
 
 namespace stillmap {
 
@@ -26,7 +26,7 @@ bool LoopStage::close(Session& session, KeyframeId newest, std::int64_t frame) {
   detector_.clear();
   ++closed_;
   auto window =
-      std::make_shared<Map>(world_window(session.map, session.map.keyframe(newest).world));
+      std::make_shared<Map>(submap_window(session.map, session.map.keyframe(newest).submap));
   adjustments_.submit(frame + config_.adjustment_lag_frames, [window, number = closed_, this] {
     return NumberedCorrection(
         number, adjust_globally(std::move(*window), camera_, measure_, config_.bundle));
@@ -44,10 +44,10 @@ bool LoopStage::apply_due(Map& map, std::int64_t frame) {
   return moved;
 }
 
-void LoopStage::finish(Map& map, WorldId world) {
+void LoopStage::finish(Map& map, SubmapId world) {
   if (closed_ == 0 || !world.valid()) return;
   apply_correction(map,
-                   adjust_globally(world_window(map, world), camera_, measure_, config_.bundle));
+                   adjust_globally(submap_window(map, world), camera_, measure_, config_.bundle));
 }
 
 }  // namespace stillmap

@@ -5,12 +5,12 @@
 #include <memory>
 #include <utility>
 
-#include "stillmap/core/stage_probe.hpp"
-#include "stillmap/loop_closing/global_adjustment.hpp"
-#include "stillmap/loop_closing/loop_detector.hpp"
+#include "stillmap/concurrency/job_ledger.hpp"
+#include "stillmap/concurrency/stage_probe.hpp"
+#include "stillmap/concurrency/worker.hpp"
 #include "stillmap/session/session.hpp"
-#include "stillmap/system/job_ledger.hpp"
-#include "stillmap/system/worker.hpp"
+#include "stillmap/slam/loop/global_adjustment.hpp"
+#include "stillmap/slam/loop/loop_detector.hpp"
 
 namespace stillmap {
 
@@ -45,7 +45,7 @@ class LoopStage {
 
   /// At the end: adjusts a world once more if this run has closed a loop, with all that has been
   /// seen since.
-  void finish(Map& map, WorldId world);
+  void finish(Map& map, SubmapId world);
 
  private:
   using NumberedCorrection = std::pair<int, GlobalCorrection>;  // of the n-th loop

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "stillmap/dynamics/dynamic_objects.hpp"
-#include "stillmap/features/orb_extractor.hpp"
+#include "stillmap/perception/motion/dynamic_objects.hpp"
+#include "stillmap/slam/features/orb_extractor.hpp"
 
 namespace stillmap {
 

@@ -7,16 +7,16 @@
 #include <initializer_list>
 #include <string>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
+#include "simulation/synth/sequence.hpp"
 #include "stillmap/config/config_io.hpp"
-#include "stillmap/core/se3.hpp"
-#include "stillmap/eval/ate.hpp"
-#include "stillmap/features/features_test_support.hpp"
-#include "stillmap/synth/sequence.hpp"
+#include "stillmap/geometry/se3.hpp"
 #include "stillmap/system/system.hpp"
+#include "tests/support/feature_images.hpp"
+#include "tooling/eval/ate.hpp"
 
 namespace stillmap {
 namespace {

@@ -5,10 +5,10 @@
 #include <set>
 
 #include "stillmap/core/error.hpp"
-#include "stillmap/features/feature_selection.hpp"
+#include "stillmap/core/stopwatch.hpp"
+#include "stillmap/session/merge_sessions.hpp"
 #include "stillmap/session/session_map.hpp"
-#include "stillmap/system/merge_sessions.hpp"
-#include "stillmap/system/stopwatch.hpp"
+#include "stillmap/slam/features/feature_selection.hpp"
 
 namespace stillmap {
 namespace {
@@ -25,7 +25,7 @@ constexpr std::int64_t kEnd = std::int64_t{1} << 62;  // after all frames, and w
 
 System::System(const SystemConfig& config, const CameraModel& camera, const SystemOptions& options)
     : config_(checked(config)),
-      cloud_config_(config.cloud.decided(config.dynamics.mode)),
+      cloud_config_(config.cloud.resolved_for(config.dynamics.mode)),
       camera_(camera),
       threads_(static_cast<std::size_t>(std::max(options.threads, 1))),
       localize_only_(options.localize_only),
@@ -40,7 +40,7 @@ System::System(const SystemConfig& config, const CameraModel& camera, const Syst
       views_(cloud_config_, camera, {options.threads > 1, options.probe}),
       loops_(config.loop,
              camera,
-             between_views(config, extractor_.level_scales()),
+             loop_measurement_model(config, extractor_.level_scales()),
              config.seed,
              {options.threads > 1, options.probe}) {}
 
@@ -56,8 +56,8 @@ void System::load(Session session) {
   session_ = std::move(session);
   first_frame_ = session_.frames.size();
   loops_.set_places(index_of(session_.map));
-  const std::vector<WorldId> worlds = session_.map.worlds();
-  if (!worlds.empty()) next_world_ = WorldId(worlds.back().value + 1);
+  const std::vector<SubmapId> submaps = session_.map.submaps();
+  if (!submaps.empty()) next_submap_ = SubmapId(submaps.back().value + 1);
 }
 
 PreparedFrame System::prepare(const RgbdFrame& frame, const FrameObjects& objects) const {
@@ -97,11 +97,12 @@ FrameResult System::process(const FramePtr& frame,
       extractor_.extract(std::move(prepared.corners), frame->depth, result.dynamics.excluded);
   result.stages.push_back({"features", prepared.corners_ms + stage.lap_ms()});
   if (dynamics_.enabled()) {
-    SiftedFeatures sifted = dynamics_.sift(*frame, std::move(features), result.dynamics, expected);
-    features = std::move(sifted.features);
-    result.dynamics.fates = std::move(sifted.fates);
-    result.dynamics.dropped = std::move(sifted.dropped);
-    result.stages.push_back({"feature sifting", stage.lap_ms()});
+    FilteredFeatures filtered =
+        dynamics_.filter(*frame, std::move(features), result.dynamics, expected);
+    features = std::move(filtered.features);
+    result.dynamics.verdicts = std::move(filtered.verdicts);
+    result.dynamics.dropped = std::move(filtered.dropped);
+    result.stages.push_back({"feature filter", stage.lap_ms()});
   }
 
   result.tracked = track(*frame, std::move(features), origin);
@@ -158,7 +159,7 @@ bool System::needs_own_objects() const {
   return session_.map.keyframes().empty() || long_lost;
 }
 
-bool System::may_begin_world(const Features& features) const {
+bool System::may_begin_submap(const Features& features) const {
   if (!needs_own_objects()) return false;
   int with_depth = 0;
   for (std::size_t i = 0; i < features.size(); ++i) {
@@ -169,7 +170,7 @@ bool System::may_begin_world(const Features& features) const {
 
 TrackedFrame System::track(const RgbdFrame& frame, Features features, MaskOrigin origin) {
   TrackedFrame tracked = tracker_.track(frame, std::move(features), session_.map, loops_.places());
-  if (!has_pose(tracked) && origin == MaskOrigin::kOwn && may_begin_world(*tracked.features)) {
+  if (!has_pose(tracked) && origin == MaskOrigin::kOwn && may_begin_submap(*tracked.features)) {
     return tracker_.start(frame, tracked.features);
   }
   if (!localize_only_) count_landmarks(tracked);
@@ -190,10 +191,10 @@ KeyframeId System::insert_keyframe(const RgbdFrame& frame, const TrackedFrame& t
   keyframe.frame = frame.id;
   keyframe.stamp = frame.stamp;
   if (tracked.status == TrackingStatus::kInitialized) {
-    keyframe.world = next_world_;
-    next_world_ = WorldId(next_world_.value + 1);
+    keyframe.submap = next_submap_;
+    next_submap_ = SubmapId(next_submap_.value + 1);
   } else {
-    keyframe.world = map.keyframe(map.anchor(tracked.reference).keyframe).world;
+    keyframe.submap = map.keyframe(map.anchor(tracked.reference).keyframe).submap;
   }
   keyframe.T_world_camera = tracked.T_world_camera;
   keyframe.features = tracked.features;
@@ -233,14 +234,15 @@ void System::take_objects(FrameObjects objects) {
     dynamics = dynamics_.judge(frame, std::move(objects), T);
     dynamics_.learn_motions(frame, T, dynamics);
   }
-  const TrackedFrame tracked = off_masks(awaiting, dynamics.excluded);
+  const TrackedFrame tracked = without_masked_features(awaiting, dynamics.excluded);
   const bool is_keyframe = wants_keyframe(config_.keyframe, tracked, since_keyframe_, session_.map);
   if (is_keyframe) record = {frame.stamp, insert_keyframe(frame, tracked)};
   views_.add({awaiting.frame, dynamics, awaiting.record, is_keyframe}, frame_number_);
 }
 
 // The frame as it would be had it come with these masks, its landmarks as the map has them now.
-TrackedFrame System::off_masks(const AwaitingObjects& awaiting, const cv::Mat1b& excluded) const {
+TrackedFrame System::without_masked_features(const AwaitingObjects& awaiting,
+                                             const cv::Mat1b& excluded) const {
   TrackedFrame tracked = awaiting.tracked;
   const Features& features = *tracked.features;
   std::vector<std::uint8_t> keep(features.size(), 1);
@@ -291,21 +293,21 @@ void System::remember(const FramePtr& frame, FrameResult& result, MaskOrigin ori
 
 RunResult System::finish() {
   update_map(kEnd);  // which may begin another adjustment
-  loops_.finish(session_.map, main_world(session_, first_frame_));
+  loops_.finish(session_.map, main_submap(session_, first_frame_));
   session_.camera.readout_s = readout_s();
 
   RunResult result;
   result.lost_at_end = lost_frames_ > 0 || frame_number_ == 0;
-  WorldId world = main_world(session_, first_frame_);
-  if (!world.valid()) world = main_world(session_);  // nothing of this run was tracked
-  result.trajectory = trajectory_in(session_, world, first_frame_);
+  SubmapId submap = main_submap(session_, first_frame_);
+  if (!submap.valid()) submap = main_submap(session_);  // nothing of this run was tracked
+  result.trajectory = trajectory_in(session_, submap, first_frame_);
   result.frames_elsewhere = session_.frames.size() - first_frame_ - result.trajectory.size();
-  result.keyframes = keyframes_in(session_, world);
+  result.keyframes = keyframes_in(session_, submap);
   result.loops = closed_loops_;
   std::vector<PosedView> posed;
   for (const ViewRecord& view : session_.views) {
     const FrameRecord& record = session_.frames[view.frame];
-    if (world_of(session_, record) != world) continue;
+    if (submap_of(session_, record) != submap) continue;
     posed.push_back({T_world_frame(session_, record), view.view.get()});
   }
   result.map = static_map(posed, camera_, cloud_config_, threads_);
@@ -314,11 +316,11 @@ RunResult System::finish() {
 
 PointCloud System::cloud_with_poses(
     std::span<const std::optional<Eigen::Isometry3d>> T_world_frames) const {
-  const WorldId world = main_world(session_, first_frame_);
+  const SubmapId submap = main_submap(session_, first_frame_);
   std::vector<std::optional<Eigen::Isometry3d>> poses(session_.frames.size());
   std::size_t given = 0;
   for (std::size_t i = first_frame_; i < poses.size(); ++i) {
-    if (world_of(session_, session_.frames[i]) != world) continue;
+    if (submap_of(session_, session_.frames[i]) != submap) continue;
     STILLMAP_CHECK(given < T_world_frames.size());
     poses[i] = T_world_frames[given++];
   }

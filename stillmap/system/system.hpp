@@ -6,17 +6,17 @@
 #include <optional>
 #include <span>
 
+#include "stillmap/concurrency/job_ledger.hpp"
+#include "stillmap/concurrency/worker.hpp"
 #include "stillmap/core/rgbd_frame.hpp"
 #include "stillmap/core/trajectory.hpp"
+#include "stillmap/perception/motion/dynamics_stage.hpp"
 #include "stillmap/session/session.hpp"
-#include "stillmap/system/config.hpp"
-#include "stillmap/system/dynamics_stage.hpp"
+#include "stillmap/session/system_config.hpp"
 #include "stillmap/system/frame_result.hpp"
-#include "stillmap/system/job_ledger.hpp"
 #include "stillmap/system/loop_stage.hpp"
 #include "stillmap/system/prepared_frame.hpp"
 #include "stillmap/system/view_stage.hpp"
-#include "stillmap/system/worker.hpp"
 
 namespace stillmap {
 
@@ -27,12 +27,12 @@ struct ClosedLoop {
 
 /// All that a finished run knows, under final poses.
 struct RunResult {
-  /// The run's tracked frames in the world that has most of them. Others were tracked after a loss
-  /// in a world of their own, which no known place has joined to this one.
+  /// The run's tracked frames in the submap that has most of them. Others were tracked after a loss
+  /// in a submap of their own, which no known place has joined to this one.
   Trajectory trajectory;
-  std::size_t frames_elsewhere = 0;  ///< tracked, but in such a world
-  Trajectory keyframes;              ///< of that world, also those of a session that it continues
-  PointCloud map;                    ///< of that world
+  std::size_t frames_elsewhere = 0;  ///< tracked, but in such a submap
+  Trajectory keyframes;              ///< of that submap, also those of a session that it continues
+  PointCloud map;                    ///< of that submap
   std::vector<ClosedLoop> loops;     ///< closed in this run
   bool lost_at_end = false;
 };
@@ -110,18 +110,18 @@ class System {
     std::size_t record;  // in session_.frames
   };
 
-  [[nodiscard]] bool may_begin_world(const Features& features) const;
+  [[nodiscard]] bool may_begin_submap(const Features& features) const;
   [[nodiscard]] TrackedFrame track(const RgbdFrame& frame, Features features, MaskOrigin origin);
   [[nodiscard]] KeyframeId insert_keyframe(const RgbdFrame& frame, const TrackedFrame& tracked);
-  [[nodiscard]] TrackedFrame off_masks(const AwaitingObjects& awaiting,
-                                       const cv::Mat1b& excluded) const;
+  [[nodiscard]] TrackedFrame without_masked_features(const AwaitingObjects& awaiting,
+                                                     const cv::Mat1b& excluded) const;
   void remember(const FramePtr& frame, FrameResult& result, MaskOrigin origin);
   void count_landmarks(const TrackedFrame& tracked);
   void update_map(std::int64_t frame);
   void apply(const MapUpdate& update);
 
   SystemConfig config_;
-  CloudConfig cloud_config_;  // decided
+  CloudConfig cloud_config_;  // resolved
   CameraModel camera_;
   std::size_t threads_;
   bool localize_only_;
@@ -138,8 +138,8 @@ class System {
   KeyframeAge since_keyframe_;
   std::vector<ClosedLoop> closed_loops_;
   int lost_frames_ = 0;  // in a row
-  WorldId next_world_{0};
-  /// Corrections move the world; what compares frames with their past goes on in coordinates that
+  SubmapId next_submap_{0};
+  /// Corrections move the submap; what compares frames with their past goes on in coordinates that
   /// stay.
   Eigen::Isometry3d T_odometry_world_ = Eigen::Isometry3d::Identity();
 

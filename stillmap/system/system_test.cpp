@@ -6,10 +6,10 @@
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 
-#include "stillmap/core/ahead.hpp"
-#include "stillmap/eval/ate.hpp"
-#include "stillmap/synth/detection_faults.hpp"
-#include "stillmap/synth/sequence.hpp"
+#include "simulation/synth/detection_faults.hpp"
+#include "simulation/synth/sequence.hpp"
+#include "stillmap/concurrency/prefetcher.hpp"
+#include "tooling/eval/ate.hpp"
 
 namespace stillmap {
 namespace {
@@ -319,7 +319,7 @@ TEST(System, GivesTheSameBitsForFramesPreparedAheadOnAnotherThread) {
   System plain({}, synthetic_camera(320, 240), {.threads = 1});
   System hurried({}, synthetic_camera(320, 240), {.threads = 2});
   std::size_t next = 0;
-  Ahead<PreparedFrame> ahead(
+  Prefetcher<PreparedFrame> ahead(
       [&]() -> std::optional<PreparedFrame> {
         if (next == crowded.frames.size()) return std::nullopt;
         const std::size_t i = next++;

@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "stillmap/dense/label_image.hpp"
 #include "stillmap/session/session_map.hpp"
-#include "stillmap/system/label_image.hpp"
 
 namespace stillmap {
 
@@ -37,7 +37,7 @@ void ViewStage::add(const Candidate& candidate, std::int64_t frame_number) {
   const cv::Mat1b excluded = dynamics.excluded;
   const cv::Mat1b labels = label_image(frame->depth, dynamics);
   jobs_.submit(frame_number + kLagFrames, [frame, mask, excluded, labels, index, this] {
-    const NotStatic masks = not_static(mask, excluded);
+    const DynamicRegions masks = dynamic_regions(mask, excluded);
     return ViewRecord{
         index,
         std::make_shared<const StaticView>(static_view(*frame, rays_, config_, masks, labels))};
@@ -50,22 +50,22 @@ bool ViewStage::is_due(std::int64_t record) const {
 
 void ViewStage::collect_due(Session& session, std::int64_t frame_number) {
   for (ViewRecord& made : jobs_.collect_due(frame_number)) {
-    if (is_news(session, made)) session.views.push_back(std::move(made));
+    if (is_worth_keeping(session, made)) session.views.push_back(std::move(made));
   }
 }
 
-bool ViewStage::is_news(const Session& session, const ViewRecord& made) const {
+bool ViewStage::is_worth_keeping(const Session& session, const ViewRecord& made) const {
   if (config_.views.enough == 0) return true;
   const auto posed = [&](const ViewRecord& record) {
     return PosedView{T_world_frame(session, session.frames[record.frame]), record.view.get()};
   };
-  const WorldId world = world_of(session, session.frames[made.frame]);
+  const SubmapId world = submap_of(session, session.frames[made.frame]);
   std::vector<PosedView> held;
   for (const ViewRecord& record : session.views) {
-    if (world_of(session, session.frames[record.frame]) == world) held.push_back(posed(record));
+    if (submap_of(session, session.frames[record.frame]) == world) held.push_back(posed(record));
   }
-  const ViewNews news = news_of(posed(made), held, camera_, config_.views, config_.free);
-  return joins(news, config_.views);
+  const ViewGain news = gain_of(posed(made), held, camera_, config_.views, config_.free);
+  return stillmap::is_worth_keeping(news, config_.views);
 }
 
 }  // namespace stillmap

@@ -5,18 +5,18 @@
 #include <memory>
 #include <optional>
 
-#include "stillmap/core/stage_probe.hpp"
+#include "stillmap/concurrency/job_ledger.hpp"
+#include "stillmap/concurrency/stage_probe.hpp"
+#include "stillmap/concurrency/worker.hpp"
+#include "stillmap/dense/static_map.hpp"
 #include "stillmap/session/session.hpp"
-#include "stillmap/system/cloud_stage.hpp"
-#include "stillmap/system/job_ledger.hpp"
-#include "stillmap/system/worker.hpp"
 
 namespace stillmap {
 
 /// Makes the dense map's views: of key frames and of some frames between them.
 class ViewStage {
  public:
-  /// `config` is decided. Views are in the session some frames after they were begun.
+  /// `config` is resolved. Views are in the session some frames after they were begun.
   ViewStage(const CloudConfig& config, const CameraModel& camera, const StageOptions& options);
 
   /// Views that have not been begun are dropped.
@@ -38,7 +38,7 @@ class ViewStage {
 
  private:
   [[nodiscard]] bool is_due(std::int64_t record) const;
-  [[nodiscard]] bool is_news(const Session& session, const ViewRecord& made) const;
+  [[nodiscard]] bool is_worth_keeping(const Session& session, const ViewRecord& made) const;
 
   CloudConfig config_;
   CameraModel camera_;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Another project that uses the installed stillmap: something of its lowest module, of one whose
 // private libraries have to be found too, and of the top.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "stillmap/config/config_io.hpp"
-#include "stillmap/core/camera.hpp"
 #include "stillmap/core/error.hpp"
-#include "stillmap/pose_graph/pose_graph.hpp"
+#include "stillmap/geometry/camera.hpp"
+#include "stillmap/slam/optim/pose_graph.hpp"
 #include "stillmap/system/system.hpp"
 
 namespace {

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <opencv2/core/mat.hpp>
+
+#include "simulation/render/ray_scene.hpp"
+
+namespace stillmap {
+
+/// What the ray through a pixel's centre meets half way through the exposure.
+struct Surfel {
+  SurfaceHit hit;
+  MaterialId material = 0;
+  Eigen::Vector3f point = Eigen::Vector3f::Zero();   ///< in the world
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< of the triangle, towards the camera
+};
+
+/// Whether two points lie on one smooth piece of surface with one material: light and texture go
+/// on from one to the other without a break.
+[[nodiscard]] bool continuous(const Surfel& a, const Surfel& b);
+
+/// A row-major image of surfels.
+struct SurfaceBuffer {
+  int width = 0;
+  int height = 0;
+  std::vector<Surfel> surfels;
+
+  [[nodiscard]] const Surfel& at(int x, int y) const {
+    return surfels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                   static_cast<std::size_t>(x)];
+  }
+};
+
+/// The surfels of a camera whose pixel centres look along `rays` = (x/z, y/z).
+[[nodiscard]] SurfaceBuffer trace_surfaces(const RayScene& scene,
+                                           const Eigen::Isometry3d& T_world_camera,
+                                           const cv::Mat2f& rays);
+
+/// 255 where a pixel shows more than one smooth surface while the shutter is open, or may: along
+/// the edges between surfaces, widened by how far the image moves there.
+[[nodiscard]] cv::Mat1b mixed_pixels(const SurfaceBuffer& surfaces,
+                                     const RayScene& scene,
+                                     const Exposure& exposure,
+                                     float focal_length_px);
+
+}  // namespace stillmap

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "simulation/scene/body.hpp"
+#include "simulation/scene/posture.hpp"
+#include "simulation/scene/track.hpp"
+
+namespace stillmap {
+
+/// A stretch of time in which somebody takes steps.
+struct Walk {
+  double start_s;
+  double end_s;
+};
+
+/// Where the feet of somebody are who follows a path: a foot that bears weight rests where it came
+/// down; it rolls over the heel when it comes down and over the toes when it goes.
+class Footfalls {
+ public:
+  /// The path rests outside the walks. `half_width_m`: from the path's middle to each ankle.
+  Footfalls(const FloorPath& path, const std::vector<Walk>& walks, double half_width_m);
+
+  /// A foot's frame at a time: origin on the sole below the ankle, x to the toes; and how high the
+  /// step lifts it, 0 while it stands.
+  struct Foot {
+    Eigen::Isometry3d T_world_sole;
+    double lift_m;
+  };
+  [[nodiscard]] Foot at(double t_s, BodySide side) const;
+
+ private:
+  struct Step {
+    double lifts_s;
+    double lands_s;
+    FloorPose from;
+    FloorPose to;
+  };
+
+  void add_walk(const FloorPath& path, const Walk& walk);
+
+  double half_width_m_;
+  std::array<FloorPose, 2> first_;
+  std::array<std::vector<Step>, 2> steps_;
+};
+
+/// Where somebody is who stands or walks: the pelvis as high as the legs allow, arms that swing
+/// against the feet.
+struct Stance {
+  FloorPose root;
+  std::array<Footfalls::Foot, 2> feet;
+};
+
+/// The pelvis over a stance: it bobs, sways over the foot that bears, and turns with the steps.
+[[nodiscard]] Eigen::Isometry3d pelvis_over(const Skeleton& skeleton,
+                                            double pelvis_height_m,
+                                            const Stance& stance);
+
+/// How far the left foot is ahead of the right one.
+[[nodiscard]] double stride_of(const Stance& stance);
+
+/// The ankle of a foot.
+[[nodiscard]] Eigen::Isometry3d ankle_of(const Skeleton& skeleton,
+                                         double pelvis_height_m,
+                                         const Footfalls::Foot& foot);
+
+}  // namespace stillmap

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "simulation/scene/actor.hpp"
+#include "simulation/scene/world.hpp"
+
+namespace stillmap {
+
+/// A thing that somebody moves.
+struct ThingRole {
+  std::string thing;
+  ThingMotion T_world_thing;
+};
+
+/// Who does what: one role a person, in the order of their numbers.
+struct Play {
+  std::vector<Role> roles;
+  std::vector<ThingRole> things;
+};
+
+/// The thing of that name; an Error where the world has none.
+[[nodiscard]] const Thing& thing_named(const World& world, const std::string& name);
+
+/// Two people who talk at their desks.
+[[nodiscard]] Play sitting_play(const World& office);
+
+/// Three people on the move. All is fixed by time and by where the things are at first.
+[[nodiscard]] Play walking_play(const World& office);
+
+}  // namespace stillmap

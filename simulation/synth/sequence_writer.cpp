@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulation/synth/sequence_writer.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <system_error>
+
+#include <fmt/core.h>
+
+#include "simulation/synth/detection_faults.hpp"
+#include "simulation/synth/truth_maps.hpp"
+#include "stillmap/concurrency/parallel.hpp"
+#include "stillmap/core/error.hpp"
+#include "stillmap/io/atomic_file.hpp"
+#include "stillmap/io/image_io.hpp"
+#include "stillmap/io/ply.hpp"
+#include "stillmap/io/trajectory_io.hpp"
+#include "stillmap/perception/detections/detections_io.hpp"
+#include "stillmap/sensor/camera_io.hpp"
+
+namespace stillmap {
+namespace {
+
+namespace fs = std::filesystem;
+
+void create_folder(const fs::path& folder) {
+  std::error_code failure;
+  fs::create_directories(folder, failure);
+  if (failure) {
+    throw Error("{}: the folder cannot be made ({}); name one in a place that can be written to",
+                folder.string(),
+                failure.message());
+  }
+}
+
+// A sequence never mixes with what is there already.
+void check_vacant(const fs::path& folder) {
+  std::error_code failure;
+  const fs::file_status status = fs::status(folder, failure);
+  if (!fs::exists(status)) return;
+  if (!fs::is_directory(status)) {
+    throw Error("{}: is a file, expected a folder for the sequence; name another", folder.string());
+  }
+  const bool empty = fs::is_empty(folder, failure);
+  if (failure) throw Error("{}: cannot be read ({})", folder.string(), failure.message());
+  if (!empty) {
+    throw Error("{}: is not empty; name a new folder for the sequence or empty this one first",
+                folder.string());
+  }
+}
+
+struct Lists {
+  std::string rgb = "# color images\n# timestamp filename\n";
+  std::string depth = "# depth maps\n# timestamp filename\n";
+  std::string associations;
+
+  void add(const std::string& stamp) {
+    rgb += fmt::format("{0} rgb/{0}.png\n", stamp);
+    depth += fmt::format("{0} depth/{0}.png\n", stamp);
+    associations += fmt::format("{0} rgb/{0}.png {0} depth/{0}.png\n", stamp);
+  }
+};
+
+// A frame whose images are written, and what is true about it.
+struct WrittenFrame {
+  RenderedImage image;
+  FrameTruth truth;
+  TruthFrame objects;
+};
+
+// Which share of each object that can move is within the image, in the order of speeds().
+std::vector<double> visible_shares(const SyntheticSequence& sequence, FrameId id) {
+  const Eigen::Isometry3d T_world_camera = sequence.pose(id);
+  std::vector<double> shares;
+  for (const MovableSurface& surface : movable_surfaces(sequence.world(), sequence.state(id))) {
+    shares.push_back(share_in_view(surface.p_world, sequence.camera(), T_world_camera));
+  }
+  return shares;
+}
+
+// All that can move, in the order of speeds().
+std::vector<TruthObject> truth_objects(const SyntheticSequence& sequence,
+                                       const std::vector<int>& moved) {
+  std::vector<TruthObject> objects;
+  const auto add = [&](int id, const std::string& class_name, const std::string& name) {
+    objects.push_back({id, class_name, name, true, std::ranges::binary_search(moved, id)});
+  };
+  for (const Thing& thing : sequence.world().things) {
+    if (thing.id != 0) add(thing.id, thing.class_name, thing.name);
+  }
+  for (const Person& person : sequence.world().people) add(person.id, "person", person.name);
+  return objects;
+}
+
+// Renders a frame and writes its images.
+WrittenFrame write_frame(const SyntheticSequence& sequence,
+                         const std::vector<TruthObject>& objects,
+                         const fs::path& folder,
+                         FrameId id) {
+  const SyntheticFrame rendered = sequence.render(id);
+  const RgbdFrame& frame = *rendered.frame;
+  const std::string name = frame.stamp.text + ".png";
+  write_file_atomically(folder / "rgb" / name, encode_png(frame.color));
+  write_file_atomically(folder / "depth" / name,
+                        encode_depth_png(frame.depth, sequence.camera().depth_factor));
+  write_file_atomically(folder / "truth" / "masks" / name, encode_mask_png(rendered.truth.ids));
+
+  const ObjectMask ids(rendered.truth.ids);
+  WrittenFrame written{rendered.truth,
+                       {id, frame.stamp, ids, {}},
+                       {frame.stamp, frame_objects(ids, sequence.speeds(id))}};
+  const std::vector<double> shares = visible_shares(sequence, id);
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const TruthFrameObject& seen = written.objects.objects[i];
+    written.truth.objects.push_back(
+        {objects[i].id, objects[i].class_name, seen.box, seen.pixels, shares[i]});
+  }
+  return written;
+}
+
+// Gathers what is true of the whole sequence.
+class TruthFolder {
+ public:
+  TruthFolder(const SyntheticSequence& sequence, const std::vector<int>& moved)
+      : maps_(sequence.camera(), moved) {}
+
+  void add(const WrittenFrame& frame, const Eigen::Isometry3d& T_world_camera) {
+    maps_.add(frame.image.color, frame.image.depth, frame.truth.mask, T_world_camera);
+    frames_.push_back(frame.objects);
+  }
+
+  void write(const fs::path& folder,
+             const CameraModel& camera,
+             const std::vector<TruthObject>& objects) const {
+    write_file_atomically(folder / "static_map.ply", encode_ply(maps_.static_map()));
+    write_file_atomically(folder / "dynamic_map.ply", encode_ply(maps_.dynamic_map()));
+    write_file_atomically(folder / "objects.json", format_objects_json(camera, objects, frames_));
+  }
+
+ private:
+  TruthMaps maps_;
+  std::vector<TruthFrame> frames_;
+};
+
+// The folder of detections, where one is asked for.
+class DetectionsMaker {
+ public:
+  DetectionsMaker(const SyntheticSequence& sequence, const fs::path& folder, DetectionKind kind)
+      : kind_(kind), faults_(sequence.options().seed) {
+    const CameraModel& camera = sequence.camera();
+    if (kind == DetectionKind::kNone) return;
+    writer_.emplace(folder, cv::Size(camera.width_px, camera.height_px));
+  }
+
+  void add(const FrameTruth& truth) {
+    if (!writer_) return;
+    writer_->add(kind_ == DetectionKind::kPerfect ? perfect_detections(truth)
+                                                  : faults_.apply(truth));
+  }
+
+  void finish() {
+    if (writer_) writer_->finish();
+  }
+
+ private:
+  DetectionKind kind_;
+  DetectionFaults faults_;
+  std::optional<DetectionsWriter> writer_;
+};
+
+}  // namespace
+
+void write_sequence(const SyntheticSequence& sequence,
+                    const fs::path& folder,
+                    const WriteOptions& options,
+                    const std::function<void(std::size_t, std::size_t)>& on_progress) {
+  check_vacant(folder);
+  for (const char* name : {"rgb", "depth", "truth/masks"}) create_folder(folder / name);
+  const std::vector<int> moved = sequence.moved_ids();
+  const std::vector<TruthObject> objects = truth_objects(sequence, moved);
+  Lists lists;
+  TruthFolder truth(sequence, moved);
+  DetectionsMaker detections(sequence, folder / "detections", options.detections);
+  produce_in_parallel(
+      sequence.size(),
+      options.threads,
+      [&](std::size_t i) {
+        return write_frame(sequence, objects, folder, FrameId(static_cast<std::uint32_t>(i)));
+      },
+      [&](std::size_t i, const WrittenFrame& frame) {
+        truth.add(frame, sequence.pose(frame.truth.frame));
+        detections.add(frame.truth);
+        lists.add(frame.truth.stamp.text);
+        if (on_progress) on_progress(i + 1, sequence.size());
+      });
+  detections.finish();
+  truth.write(folder / "truth", sequence.camera(), objects);
+  if (sequence.options().assets) {
+    write_file_atomically(folder / "assets.txt", sequence.options().assets->credits);
+  }
+  // The lists come last: a folder with them is complete.
+  write_file_atomically(folder / "camera.yaml", format_camera_yaml(sequence.camera()));
+  write_file_atomically(folder / "groundtruth.txt", format_trajectory(sequence.ground_truth()));
+  write_file_atomically(folder / "associations.txt", lists.associations);
+  write_file_atomically(folder / "depth.txt", lists.depth);
+  write_file_atomically(folder / "rgb.txt", lists.rgb);
+}
+
+}  // namespace stillmap

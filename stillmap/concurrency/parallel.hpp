@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <exception>
+#include <thread>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "stillmap/concurrency/channel.hpp"
+#include "stillmap/core/error.hpp"
+
+namespace stillmap {
+
+/// Calls consume(i, produce(i)) for i from 0 to count - 1: consume on this thread, in order;
+/// produce on `threads` others, at most three results ahead each. `produce` must not depend on the
+/// order of its calls. Passes on what either throws, after all threads have ended.
+template <class Produce, class Consume>
+void produce_in_parallel(std::size_t count,
+                         std::size_t threads,
+                         const Produce& produce,
+                         const Consume& consume) {
+  STILLMAP_CHECK(threads > 0);
+  using Item = std::invoke_result_t<const Produce&, std::size_t>;
+  std::deque<Channel<Item>> channels;  // one a thread; outlives them
+  for (std::size_t k = 0; k < threads; ++k) channels.emplace_back(2);
+  std::vector<std::jthread> workers;
+  for (std::size_t k = 0; k < threads; ++k) {
+    workers.emplace_back([&, k] {
+      try {
+        for (std::size_t i = k; i < count; i += threads) {
+          if (!channels[k].push(produce(i))) return;
+        }
+        channels[k].close();
+      } catch (...) {
+        channels[k].fail(std::current_exception());
+      }
+    });
+  }
+  try {
+    for (std::size_t i = 0; i < count; ++i) consume(i, *channels[i % threads].pop());
+  } catch (...) {
+    for (Channel<Item>& channel : channels) channel.cancel();
+    throw;
+  }
+}
+
+/// Calls work(i) for i from 0 to count - 1, each on a thread of its own, the first on this one.
+/// Passes on what the first of them throws, in their order, after all have ended.
+template <class Work>
+void in_parallel(std::size_t count, const Work& work) {
+  std::vector<std::exception_ptr> failures(count);
+  const auto attempt = [&](std::size_t i) {
+    try {
+      work(i);
+    } catch (...) {
+      failures[i] = std::current_exception();
+    }
+  };
+  {
+    std::vector<std::jthread> others;
+    for (std::size_t i = 1; i < count; ++i) others.emplace_back(attempt, i);
+    if (count > 0) attempt(0);
+  }
+  for (const std::exception_ptr& failure : failures) {
+    if (failure) std::rethrow_exception(failure);
+  }
+}
+
+}  // namespace stillmap

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <thread>
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include "stillmap/concurrency/channel.hpp"
+
+namespace stillmap {
+
+/// One thread that runs tasks in the order they are posted. Destruction drops those not begun and
+/// waits for the one that runs. Tasks must not throw (JobLedger's hand what they throw to a
+/// future).
+class Worker {
+ public:
+  enum class Priority {
+    kNormal,
+    kLow,  ///< others of this process that want a processor get it first
+  };
+  explicit Worker(Priority priority = Priority::kNormal)
+      : thread_([this, priority] {
+          if (priority == Priority::kLow) give_way();
+          run();
+        }) {}
+  ~Worker() {
+    tasks_.cancel();
+    tasks_.close();
+  }
+  Worker(const Worker&) = delete;
+  Worker& operator=(const Worker&) = delete;
+
+  /// Waits when many tasks are pending.
+  void post(std::function<void()> task) { (void)tasks_.push(std::move(task)); }
+
+ private:
+  // Only how fast things go depends on it; where it is refused they go as they would.
+  static void give_way() {
+    constexpr int kNiceness = 10;
+    (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNiceness);
+  }
+
+  void run() {
+    while (std::optional<std::function<void()>> task = tasks_.pop()) (*task)();
+  }
+
+  static constexpr std::size_t kMaxPending = 8;
+  Channel<std::function<void()>> tasks_{kMaxPending};
+  std::jthread thread_;  // last: it runs while the channel lives
+};
+
+}  // namespace stillmap

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "stillmap/core/fields.hpp"
+#include "stillmap/core/point_cloud.hpp"
+#include "stillmap/dense/range_image.hpp"
+#include "stillmap/geometry/camera.hpp"
+
+namespace stillmap {
+
+struct FreeSpaceConfig {
+  double cell_m = 0.02;
+  double margin_m = 0.05;
+  double margin_per_m = 0.0045;
+  int min_through = 2;
+  int min_stay = 5;
+  double max_through_share = 0.25;
+  double max_moving_share = 2.0;
+  int weakly_seen = 4;
+  double beside_share = 0.125;
+  double beside_m = 0.3;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("cell_m",
+          self.cell_m,
+          FieldInfo{"points of a cube with this edge are judged together", "m", 0.001, 1});
+    visit(
+        "margin_m",
+        self.margin_m,
+        FieldInfo{"a point is seen through when depth is measured this far behind it", "m", 0, 10});
+    visit("margin_per_m",
+          self.margin_per_m,
+          FieldInfo{"growth of that distance with depth squared", "1/m", 0, 1});
+    visit("min_through",
+          self.min_through,
+          FieldInfo{"views that must see through a point, the last that tell of it", "", 1, 1000});
+    visit("min_stay",
+          self.min_stay,
+          FieldInfo{
+              "a point that was seen through stays when so many later views see it", "", 1, 255});
+    visit("max_through_share",
+          self.max_through_share,
+          FieldInfo{
+              "or when no more than this many see through it for each that sees it", "", 0, 10});
+    visit("max_moving_share",
+          self.max_moving_share,
+          FieldInfo{"it goes when more than this many take it for what moves for each that sees it",
+                    "",
+                    0,
+                    1000});
+    visit("weakly_seen",
+          self.weakly_seen,
+          FieldInfo{"a point that no more than this many see goes when one of them sees what moves "
+                    "beside it",
+                    "",
+                    0,
+                    255});
+    visit("beside_share",
+          self.beside_share,
+          FieldInfo{"beside: so near in the image, as a share of its width", "", 0, 1});
+    visit("beside_m", self.beside_m, FieldInfo{"and so near in depth", "m", 0, 10});
+  }
+};
+
+/// What a view knows of the space before it.
+struct PosedRange {
+  Eigen::Isometry3d T_world_camera;
+  const RangeImage* range;  ///< not null; not owned
+};
+
+/// What views, in the order of their time, tell of a point. Counts end at 255.
+struct Sightings {
+  std::uint8_t seen = 0;       ///< views that measure it
+  std::uint8_t moving = 0;     ///< that measure something at its place which moves
+  std::uint8_t beside = 0;     ///< that measure it beside what moves; only for weakly seen points
+  std::uint8_t through = 0;    ///< that see through it
+  std::uint8_t seen_last = 0;  ///< that measure it after the last that sees through it
+  std::uint8_t through_last = 0;  ///< that see through it after the last that measures it
+};
+
+/// For each point (world), what the views tell of it. One that has the point out of view,
+/// hidden, or where its range is not known, tells nothing. The same with any number of threads.
+[[nodiscard]] std::vector<Sightings> sightings(std::span<const Eigen::Vector3f> points,
+                                               std::span<const PosedRange> ranges,
+                                               const CameraModel& camera,
+                                               const FreeSpaceConfig& config,
+                                               std::size_t threads = 1);
+
+/// Whether a point is part of the static world as it is at the end.
+[[nodiscard]] bool stays(const Sightings& s, const FreeSpaceConfig& config);
+
+/// The points of a map that stay, by what the frames tell of them. Points of a cube of `cell_m`
+/// have one verdict: that of their mean. The same with any number of threads.
+[[nodiscard]] PointCloud without_moved(const PointCloud& map,
+                                       std::span<const PosedRange> ranges,
+                                       const CameraModel& camera,
+                                       const FreeSpaceConfig& config,
+                                       std::size_t threads = 1);
+
+}  // namespace stillmap

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/dense/static_depth.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include "stillmap/core/error.hpp"
+#include "stillmap/dense/depth_islands.hpp"
+
+namespace stillmap {
+namespace {
+
+/// Depths over 0 and up to a limit, of pixels that are 0 in `without`.
+cv::Mat1f within(const cv::Mat1f& depth, const cv::Mat1b& without, float max_depth_m) {
+  cv::Mat1f kept(depth.size());
+  const auto columns = static_cast<std::size_t>(depth.cols);
+  for (int row = 0; row < depth.rows; ++row) {
+    const float* z = depth[row];
+    float* out = kept[row];
+    for (std::size_t x = 0; x < columns; ++x) {
+      out[x] = z[x] > 0 && z[x] <= max_depth_m ? z[x] : 0.0F;  // so written, NaN is left out too
+    }
+    if (without.empty()) continue;
+    const std::uint8_t* left_out = without[row];
+    for (std::size_t x = 0; x < columns; ++x) out[x] = left_out[x] != 0 ? 0.0F : out[x];
+  }
+  return kept;
+}
+
+}  // namespace
+
+cv::Mat1f static_depth(const cv::Mat1f& depth,
+                       const cv::Mat1b& dynamic,
+                       const StaticDepthConfig& config) {
+  STILLMAP_CHECK(dynamic.empty() || dynamic.size() == depth.size());
+  const auto max_depth = static_cast<float>(config.max_depth_m);
+  cv::Mat1f kept;
+  if (config.edges == "fixed" || config.edges == "growing") {
+    const double growth = config.edges == "growing" ? config.edge.step_per_m : 0.0;
+    const cv::Mat1f all = within(depth, dynamic, std::numeric_limits<float>::max());
+    kept = within(without_edges(all, {config.edge.step_m, growth}), {}, max_depth);
+  } else {
+    kept = within(depth, dynamic, max_depth);
+  }
+  if (config.islands != "on") return kept;
+  return without_islands(kept, config.min_island_share * static_cast<double>(depth.total()));
+}
+
+}  // namespace stillmap

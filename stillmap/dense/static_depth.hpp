@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include <opencv2/core/mat.hpp>
+
+#include "stillmap/core/fields.hpp"
+#include "stillmap/dense/depth_edges.hpp"
+
+namespace stillmap {
+
+struct StaticDepthConfig {
+  double max_depth_m = 6.0;
+  std::string edges = "by_mode";
+  DepthEdgesConfig edge;
+  std::string islands = "by_mode";
+  double min_island_share = 1000.0 / (640 * 480);
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("max_depth_m",
+          self.max_depth_m,
+          FieldInfo{"depth beyond this does not go into the map", "m", 0.1, 1000});
+    visit("edges",
+          self.edges,
+          FieldInfo{"removal of depth edges: with the paper's threshold, or one that grows with "
+                    "depth; by_mode: as dynamics.mode has it",
+                    "",
+                    0,
+                    0,
+                    {"by_mode", "off", "fixed", "growing"}});
+    visit.group("edge", self.edge);
+    visit("islands",
+          self.islands,
+          FieldInfo{"removal of small patches of depth; by_mode: as dynamics.mode has it",
+                    "",
+                    0,
+                    0,
+                    {"by_mode", "off", "on"}});
+    visit(
+        "min_island_share",
+        self.min_island_share,
+        FieldInfo{"patches smaller than this share of the image go (tau4 of Fan 2020)", "", 0, 1});
+  }
+};
+
+/// What of a depth image (metres) is static surface near enough for the map; 0 elsewhere. In this
+/// order: pixels go that are not 0 in `dynamic` (of the same size, or empty) or that have no depth
+/// (not over 0, not finite), then edges (without_edges()), what is beyond `max_depth_m`, and
+/// islands (without_islands()). Edges go before far depth does, for the rim of something before a
+/// far wall is between the two as well. "by_mode" stands for "off" here.
+[[nodiscard]] cv::Mat1f static_depth(const cv::Mat1f& depth,
+                                     const cv::Mat1b& dynamic,
+                                     const StaticDepthConfig& config);
+
+}  // namespace stillmap

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/dense/static_map.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include <opencv2/imgproc.hpp>
+
+#include "stillmap/core/error.hpp"
+#include "stillmap/dense/global_cloud.hpp"
+
+namespace stillmap {
+namespace {
+
+constexpr int kJumpsPerWidth = 70;
+
+}  // namespace
+
+CloudConfig CloudConfig::resolved_for(std::string_view dynamics_mode) const {
+  CloudConfig config = *this;
+  const bool paper = dynamics_mode == "paper", full = dynamics_mode == "full";
+  if (depth.edges == "by_mode") config.depth.edges = paper ? "fixed" : full ? "growing" : "off";
+  if (depth.islands == "by_mode") config.depth.islands = paper ? "on" : "off";
+  if (free_space == "by_mode") config.free_space = full ? "on" : "off";
+  return config;
+}
+
+StaticView static_view(const RgbdFrame& frame,
+                       const cv::Mat2f& rays,
+                       const CloudConfig& config,
+                       const DynamicRegions& dynamic_regions,
+                       const cv::Mat1b& labels) {
+  const cv::Mat1f depth = static_depth(frame.depth.mat, dynamic_regions.excluded, config.depth);
+  return {compact(local_cloud(depth, frame.color, rays, config.local, labels)),
+          range_image(frame.depth.mat, dynamic_regions, config.range)};
+}
+
+PointCloud static_map(std::span<const PosedView> views,
+                      const CameraModel& camera,
+                      const CloudConfig& config,
+                      std::size_t threads) {
+  std::vector<PosedCloud> clouds;
+  std::vector<PosedRange> ranges;
+  for (const PosedView& posed : views) {
+    STILLMAP_CHECK(posed.view != nullptr);
+    clouds.push_back({posed.T_world_camera, &posed.view->cloud});
+    ranges.push_back({posed.T_world_camera, &posed.view->range});
+  }
+  const PointCloud all = global_cloud(clouds, config.voxel_size_m, threads);
+  if (config.free_space != "on") return all;
+  return without_moved(all, ranges, camera, config.free, threads);
+}
+
+DynamicRegions dynamic_regions(const DynamicMask& mask, const cv::Mat1b& excluded) {
+  if (mask.extended.empty()) return {excluded, {}};
+  const int side = std::max(1, mask.jumps.cols / kJumpsPerWidth);
+  cv::Mat1b moving;
+  cv::morphologyEx(mask.jumps,
+                   moving,
+                   cv::MORPH_OPEN,
+                   cv::getStructuringElement(cv::MORPH_RECT, cv::Size(side, side)));
+  cv::bitwise_or(moving, mask.extended, moving);
+  return {excluded, moving};
+}
+
+}  // namespace stillmap

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <opencv2/core/mat.hpp>
+
+#include "stillmap/core/fields.hpp"
+#include "stillmap/core/rgbd_frame.hpp"
+#include "stillmap/dense/free_space.hpp"
+#include "stillmap/dense/local_cloud.hpp"
+#include "stillmap/dense/range_image.hpp"
+#include "stillmap/dense/static_depth.hpp"
+#include "stillmap/dense/static_view.hpp"
+#include "stillmap/dense/view_selection.hpp"
+#include "stillmap/geometry/camera.hpp"
+#include "stillmap/perception/motion/dynamics_stage.hpp"
+
+namespace stillmap {
+
+/// How the map's points are made of what the views see: key frames and some frames between them.
+struct CloudConfig {
+  double voxel_size_m = 0.01;
+  StaticDepthConfig depth;
+  LocalCloudConfig local;
+  int view_gap_frames = 4;
+  ViewSelectionConfig views;
+  std::string free_space = "by_mode";
+  RangeImageConfig range;
+  FreeSpaceConfig free;
+
+  /// With every "by_mode" decided for a `dynamics.mode`.
+  ///
+  /// `paper` gets Fan 2020 to the letter: edges by its fixed threshold, and islands. `full` has
+  /// edges by a threshold that grows with depth as the camera's noise does, since the fixed one
+  /// costs the farther walls; instead of islands it removes what other views see through, or take
+  /// for what moves: most islands are legs of chairs, or what is seen between people. `off` and
+  /// `mask` get nothing: they are there to be compared with.
+  [[nodiscard]] CloudConfig resolved_for(std::string_view dynamics_mode) const;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("voxel_size_m",
+          self.voxel_size_m,
+          FieldInfo{
+              "edge of the voxels that the map is thinned to, one point each", "m", 0.001, 1.0});
+    StaticDepthConfig::fields(self.depth, visit);
+    LocalCloudConfig::fields(self.local, visit);
+    visit(
+        "view_gap_frames",
+        self.view_gap_frames,
+        FieldInfo{"so long after the last view that went into the map, a frame does that is no key "
+                  "frame; 0: key frames alone",
+                  "frames",
+                  0,
+                  1000000});
+    visit.group("views", self.views);
+    visit("free_space",
+          self.free_space,
+          FieldInfo{
+              "removal of points that other views see through; by_mode: as dynamics.mode has it",
+              "",
+              0,
+              0,
+              {"by_mode", "off", "on"}});
+    visit.group("range", self.range);
+    visit.group("free", self.free);
+  }
+};
+
+/// The map of the static world from views in the order of their time. `config` is resolved. The
+/// same with any number of threads.
+[[nodiscard]] PointCloud static_map(std::span<const PosedView> views,
+                                    const CameraModel& camera,
+                                    const CloudConfig& config,
+                                    std::size_t threads = 1);
+
+/// The static surface in a frame. `dynamic_regions.excluded` leaves it; `labels` may be empty;
+/// `config` is resolved.
+[[nodiscard]] StaticView static_view(const RgbdFrame& frame,
+                                     const cv::Mat2f& rays,
+                                     const CloudConfig& config,
+                                     const DynamicRegions& dynamic_regions,
+                                     const cv::Mat1b& labels);
+
+/// What the dynamics stage says of a frame, for the cloud: excluded are all of its dynamic pixels
+/// and a margin; known to move are those of objects, and of depth jumps that cover a square with
+/// sides of 1/70 of the image's width, which noise does not.
+[[nodiscard]] DynamicRegions dynamic_regions(const DynamicMask& mask, const cv::Mat1b& excluded);
+
+}  // namespace stillmap

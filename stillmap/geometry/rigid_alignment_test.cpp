@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/geometry/rigid_alignment.hpp"
+
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "stillmap/geometry/se3.hpp"
+
+namespace stillmap {
+namespace {
+
+std::vector<Eigen::Vector3d> random_points(std::size_t n, std::uint32_t seed) {
+  std::mt19937 rng(seed);
+  std::normal_distribution<double> normal;
+  std::vector<Eigen::Vector3d> points(n);
+  for (auto& p : points) p = Eigen::Vector3d(normal(rng), normal(rng), normal(rng));
+  return points;
+}
+
+double cost(const Eigen::Isometry3d& T,
+            const std::vector<Eigen::Vector3d>& source,
+            const std::vector<Eigen::Vector3d>& target) {
+  double sum = 0;
+  for (std::size_t i = 0; i < source.size(); ++i) sum += (target[i] - T * source[i]).squaredNorm();
+  return sum;
+}
+
+TEST(AlignRigid, FindsAnExactTransform) {
+  const auto source = random_points(20, 1);
+  const Eigen::Isometry3d T = make_pose(so3_exp({0.4, -1.2, 2.0}), {1, 2, -3});
+  std::vector<Eigen::Vector3d> target;
+  for (const auto& p : source) target.push_back(T * p);
+  EXPECT_TRUE(align_rigid(source, target).isApprox(T, 1e-12));
+}
+
+TEST(AlignRigid, NoSmallStepBeatsItOnNoisyPoints) {
+  const auto source = random_points(50, 2);
+  const auto noise = random_points(50, 3);
+  const Eigen::Isometry3d T = make_pose(so3_exp({0.1, 0.2, 0.3}), {1, 0, 0});
+  std::vector<Eigen::Vector3d> target;
+  for (std::size_t i = 0; i < source.size(); ++i) target.push_back(T * source[i] + 0.1 * noise[i]);
+  const Eigen::Isometry3d best = align_rigid(source, target);
+  for (int axis = 0; axis < 6; ++axis) {
+    for (const double h : {-1e-4, 1e-4}) {
+      const Eigen::Isometry3d moved = perturb_left(best, h * Vector6d::Unit(axis));
+      EXPECT_GT(cost(moved, source, target), cost(best, source, target));
+    }
+  }
+}
+
+TEST(AlignRigid, NeverReflects) {
+  auto source = random_points(10, 4);
+  auto target = source;
+  for (auto& p : target) p.x() = -p.x();
+  EXPECT_NEAR(align_rigid(source, target).linear().determinant(), 1.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace stillmap

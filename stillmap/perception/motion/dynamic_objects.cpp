@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/perception/motion/dynamic_objects.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "stillmap/core/error.hpp"
+#include "stillmap/perception/motion/interaction.hpp"
+
+namespace stillmap {
+namespace {
+
+StateReason reason_of(Contact contact) {
+  switch (contact) {
+    case Contact::kTouching:
+      return StateReason::kTouching;
+    case Contact::kDepthUnknown:
+      return StateReason::kDepthUnknown;
+    case Contact::kDepthsApart:
+      return StateReason::kDepthsApart;
+    case Contact::kBoxesApart:
+      break;
+  }
+  return StateReason::kBoxesApart;
+}
+
+/// The mask with the dynamic objects alone.
+cv::Mat1b dynamic_pixels(const FrameObjects& objects,
+                         const MaskAreas& areas,
+                         const std::vector<ObjectState>& states,
+                         cv::Size image) {
+  cv::Mat1b result(image, std::uint8_t{0});
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    if (!states[i].dynamic) continue;
+    const auto id = static_cast<std::uint8_t>(i + 1);
+    const cv::Rect& area = areas[id].bounds;
+    for (int row = area.y; row < area.y + area.height; ++row) {
+      const std::uint8_t* ids = objects.mask.mat[row];
+      std::uint8_t* target = result[row];
+      for (int x = area.x; x < area.x + area.width; ++x) {
+        target[x] = static_cast<std::uint8_t>(target[x] | (ids[x] == id ? id : 0));
+      }
+    }
+  }
+  return result;
+}
+
+void paint(const PixelPatch& patch, std::uint8_t number, cv::Mat1b& image) {
+  for (int v = 0; v < patch.area.height; ++v) {
+    const std::uint8_t* pixel = patch.pixels[v];
+    std::uint8_t* target = image[patch.area.y + v] + patch.area.x;
+    for (int u = 0; u < patch.area.width; ++u) {
+      const bool free = (target[u] == 0) & (pixel[u] != 0);
+      target[u] = static_cast<std::uint8_t>(target[u] | (free ? number : 0));
+    }
+  }
+}
+
+}  // namespace
+
+std::string_view reason_name(StateReason reason) {
+  switch (reason) {
+    case StateReason::kBoxesApart:
+      return "nobody near";
+    case StateReason::kDepthsApart:
+      return "apart in depth";
+    case StateReason::kNotAsked:
+      return "interaction not judged";
+    case StateReason::kDynamicClass:
+      return "dynamic class";
+    case StateReason::kTouching:
+      return "somebody at it";
+    case StateReason::kDepthUnknown:
+      return "somebody may be at it";
+    case StateReason::kMoving:
+      return "moving";
+    case StateReason::kStaticClass:
+      break;
+  }
+  return "static class";
+}
+
+DynamicObjects::DynamicObjects(const DynamicObjectsConfig& config,
+                               const CameraModel& camera,
+                               DynamicsMode mode)
+    : config_(config), mode_(mode), categories_(config.categories), warper_(camera) {
+  if (mode == DynamicsMode::kPaper) config_.extension.variant = "paper";
+}
+
+MeasuredObjects DynamicObjects::measure(const DepthImage& depth,
+                                        const FrameObjects& objects) const {
+  STILLMAP_CHECK(objects.mask.mat.empty() || objects.mask.mat.size() == depth.mat.size());
+  MeasuredObjects measured{mask_areas(objects.mask), {}};
+  const OutlierRule rule = outlier_rule(config_.extension);
+  for (const TrackedObject& object : objects.objects) {
+    const int id = object.detection.id;
+    STILLMAP_CHECK(id == static_cast<int>(measured.depths.size()) + 1 && id <= 255);
+    const MaskArea& area = measured.areas[static_cast<std::size_t>(id)];
+    measured.depths.push_back(object_depths(depth, objects.mask, id, area, rule));
+  }
+  return measured;
+}
+
+DynamicsResult DynamicObjects::judge(const DepthImage& depth,
+                                     const FrameObjects& objects,
+                                     const MeasuredObjects& measured,
+                                     std::span<const PreviousDepth> previous,
+                                     std::span<const TrackId> moving) const {
+  STILLMAP_CHECK(measured.depths.size() == objects.objects.size());
+  DynamicsResult result;
+  result.states = judge_states(objects, measured.depths, moving);
+  result.mask.raw = dynamic_pixels(objects, measured.areas, result.states, depth.mat.size());
+  WarpedDepth expected;
+  cv::Mat1f known_static;
+  if (mode_ == DynamicsMode::kFull && !previous.empty()) {
+    for (const PreviousDepth& earlier : previous) {
+      expected.fill_from(warper_.warp(earlier.depth, earlier.T_current_previous, earlier.dynamic));
+    }
+    // Without the dynamic pixels of then, what is as it was may just not have moved yet.
+    if (!previous.front().dynamic.empty()) known_static = expected.mat;
+  }
+  result.mask.extended = mode_ == DynamicsMode::kMask || !config_.extension.enabled
+                             ? result.mask.raw
+                             : extended_mask(depth, objects, measured, result.states, known_static);
+  result.mask.jumps = jumps(depth, previous, expected);
+  return result;
+}
+
+std::vector<ObjectState> DynamicObjects::judge_states(const FrameObjects& objects,
+                                                      const std::vector<ObjectDepths>& depths,
+                                                      std::span<const TrackId> moving) const {
+  std::vector<ContactParty> people;
+  std::vector<TrackId> people_tracks;
+  for (std::size_t i = 0; i < objects.objects.size(); ++i) {
+    const TrackedObject& object = objects.objects[i];
+    if (categories_.of(object.detection.class_name) != Category::kDynamic) continue;
+    people.push_back({object.detection.box, depths[i].interval});
+    people_tracks.push_back(object.track);
+  }
+  std::vector<ObjectState> states;
+  for (std::size_t i = 0; i < objects.objects.size(); ++i) {
+    ObjectState state = state_by_class(objects.objects[i], depths[i]);
+    if (state.category == Category::kPotentiallyDynamic && mode_ != DynamicsMode::kMask &&
+        config_.interaction.enabled) {
+      const Interaction touch = judge_interaction({state.box, state.depths}, people);
+      state.reason = reason_of(touch.contact);
+      state.dynamic = touch.interacts();
+      if (touch.person) state.person = people_tracks[*touch.person];
+    }
+    const bool moves = std::ranges::find(moving, state.track) != moving.end();
+    if (mode_ == DynamicsMode::kFull && moves && !state.dynamic) {
+      state.reason = StateReason::kMoving;
+      state.dynamic = true;
+    }
+    states.push_back(state);
+  }
+  return states;
+}
+
+ObjectState DynamicObjects::state_by_class(const TrackedObject& object,
+                                           const ObjectDepths& depths) const {
+  ObjectState state;
+  state.track = object.track;
+  state.category = categories_.of(object.detection.class_name);
+  state.dynamic = state.category == Category::kDynamic;
+  if (state.dynamic) state.reason = StateReason::kDynamicClass;
+  if (state.category == Category::kPotentiallyDynamic) state.reason = StateReason::kNotAsked;
+  state.box = object.detection.box;
+  state.filled = object.filled.has_value();
+  state.depths = depths.interval;
+  state.median_depth_m = depths.median_m;
+  return state;
+}
+
+cv::Mat1b DynamicObjects::extended_mask(const DepthImage& depth,
+                                        const FrameObjects& objects,
+                                        const MeasuredObjects& measured,
+                                        const std::vector<ObjectState>& states,
+                                        const cv::Mat1f& known_static) const {
+  cv::Mat1b extended(depth.mat.size(), std::uint8_t{0});
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    if (!states[i].dynamic) continue;
+    const TrackedObject& object = objects.objects[i];
+    const int id = object.detection.id;
+    const MaskArea& area = measured.areas[static_cast<std::size_t>(id)];
+    const ObjectView view{depth, objects.mask, id, object.detection.box};
+    // A box in place of a mask holds all that is known already.
+    const PixelPatch patch =
+        object.mask_source == MaskSource::kBox
+            ? mask_patch(view, area)
+            : extend_mask(view, area, measured.depths[i], config_.extension, known_static);
+    paint(patch, static_cast<std::uint8_t>(id), extended);
+  }
+  return extended;
+}
+
+cv::Mat1b DynamicObjects::jumps(const DepthImage& depth,
+                                std::span<const PreviousDepth> previous,
+                                const WarpedDepth& expected) const {
+  if (previous.empty() || mode_ == DynamicsMode::kMask || !config_.jump.enabled) {
+    return {depth.mat.size(), std::uint8_t{kNoJump}};
+  }
+  if (mode_ == DynamicsMode::kFull) return depth_jumps(depth, expected, config_.jump);
+  return depth_jumps(depth, previous.front().depth, config_.jump.paper_jump_m);
+}
+
+}  // namespace stillmap

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/perception/motion/dynamic_objects.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <memory>
+
+#include <fmt/core.h>
+#include <gtest/gtest.h>
+#include <opencv2/core.hpp>
+
+#include "stillmap/io/trajectory_io.hpp"
+#include "stillmap/perception/objects/object_tracker.hpp"
+#include "tests/support/dynamics_frames.hpp"
+#include "tests/support/image_files.hpp"
+
+namespace stillmap {
+namespace {
+
+/// A person at 2 m, a chair at 2 m that the person's box meets, one at 3 m that it meets too, one
+/// far aside, and a table.
+struct Office {
+  DepthImage depth{cv::Mat1f(480, 640, 5.0F)};
+  FrameObjects objects;
+
+  Office() {
+    objects.mask = ObjectMask(cv::Mat1b(480, 640, std::uint8_t{0}));
+    add("person", {200, 50, 300, 400}, 2.0F);
+    add("chair", {300, 250, 400, 400}, 2.1F);
+    add("chair", {150, 250, 200, 400}, 3.0F);
+    add("chair", {500, 250, 600, 400}, 2.0F);
+    add("dining table", {250, 400, 350, 470}, 2.0F);
+    // Their boxes reach over each other.
+    objects.objects[1].detection.box.x0 = 280;
+    objects.objects[2].detection.box.x1 = 220;
+  }
+
+  void add(const std::string& name, const PixelBox& box, float metres) {
+    const int id = static_cast<int>(objects.objects.size()) + 1;
+    objects.objects.push_back(tracked_object(name, box, id));
+    const cv::Rect pixels(cv::Point2d(box.x0, box.y0), cv::Point2d(box.x1, box.y1));
+    objects.mask.mat(pixels).setTo(id);
+    for (int row = 0; row < pixels.height; ++row) {  // it leans back, by 30 cm
+      const float lean = 0.3F * static_cast<float>(row) / static_cast<float>(pixels.height) - 0.15F;
+      depth.mat(pixels).row(row).setTo(metres + lean);
+    }
+  }
+
+  [[nodiscard]] DynamicsResult judge(DynamicsMode mode,
+                                     std::span<const TrackId> moving = {}) const {
+    return DynamicObjects({}, builtin_camera("tum_fr3"), mode).judge(depth, objects, {}, moving);
+  }
+};
+
+std::vector<StateReason> reasons(const DynamicsResult& result) {
+  std::vector<StateReason> found;
+  for (const ObjectState& state : result.states) found.push_back(state.reason);
+  return found;
+}
+
+TEST(DynamicObjects, JudgesEachObjectWithAReason) {
+  const Office office;
+  const DynamicsResult result = office.judge(DynamicsMode::kPaper);
+  EXPECT_EQ(reasons(result),
+            (std::vector<StateReason>{StateReason::kDynamicClass,
+                                      StateReason::kTouching,
+                                      StateReason::kDepthsApart,
+                                      StateReason::kBoxesApart,
+                                      StateReason::kStaticClass}));
+  EXPECT_TRUE(result.states[0].dynamic && result.states[1].dynamic);
+  EXPECT_FALSE(result.states[2].dynamic || result.states[3].dynamic || result.states[4].dynamic);
+  EXPECT_EQ(result.states[1].person, TrackId(1));
+  EXPECT_EQ(result.states[2].person, TrackId(1));
+  EXPECT_FALSE(result.states[3].person);
+  EXPECT_EQ(result.mask.raw(100, 250), 1);
+  EXPECT_EQ(result.mask.raw(300, 350), 2);
+  EXPECT_EQ(result.mask.raw(300, 170), 0);
+  EXPECT_TRUE(result.mask.covers(300, 350));
+  EXPECT_FALSE(result.mask.covers(300, 550));
+}
+
+TEST(DynamicObjects, MaskModeTakesPeopleAsTheNetworkHasThem) {
+  const DynamicsResult result = Office().judge(DynamicsMode::kMask);
+  EXPECT_EQ(reasons(result),
+            (std::vector<StateReason>{StateReason::kDynamicClass,
+                                      StateReason::kNotAsked,
+                                      StateReason::kNotAsked,
+                                      StateReason::kNotAsked,
+                                      StateReason::kStaticClass}));
+  EXPECT_EQ(cv::countNonZero(result.mask.extended != result.mask.raw), 0);
+  EXPECT_EQ(cv::countNonZero(result.mask.raw), 100 * 350);
+}
+
+TEST(DynamicObjects, WhatHasBeenSeenToMoveIsDynamicInFullAlone) {
+  const std::vector<TrackId> moving{TrackId(4), TrackId(5)};
+  const DynamicsResult full = Office().judge(DynamicsMode::kFull, moving);
+  EXPECT_EQ(full.states[3].reason, StateReason::kMoving);
+  EXPECT_TRUE(full.states[3].dynamic && full.states[4].dynamic);
+  EXPECT_EQ(full.mask.raw(300, 550), 4);
+  EXPECT_FALSE(Office().judge(DynamicsMode::kPaper, moving).states[3].dynamic);
+}
+
+TEST(DynamicObjects, ABoxInPlaceOfAMaskIsTakenWhole) {
+  Office office;
+  office.objects.objects[0].mask_source = MaskSource::kBox;
+  office.depth.mat(cv::Rect(200, 50, 100, 150)).setTo(5.0F);  // half of it is wall
+  const DynamicsResult result = office.judge(DynamicsMode::kFull);
+  EXPECT_EQ(cv::countNonZero(result.mask.extended == 1), 100 * 350);
+}
+
+TEST(DynamicObjects, AnEmptyFrameHasNothing) {
+  const DepthImage depth(cv::Mat1f(480, 640, 2.0F));
+  const DynamicsResult result =
+      DynamicObjects({}, builtin_camera("tum_fr3"), DynamicsMode::kFull)
+          .judge(depth, {}, std::array{PreviousDepth{depth, Eigen::Isometry3d::Identity()}});
+  EXPECT_TRUE(result.states.empty());
+  EXPECT_EQ(cv::countNonZero(result.mask.extended | result.mask.jumps | result.mask.raw), 0);
+}
+
+TEST(DynamicObjects, GarbageInTheDepthHarmsNothing) {
+  Office office;
+  cv::RNG rng(3);
+  const std::vector<float> garbage{std::nanf(""), -1.0F, INFINITY, -INFINITY, 1e30F, 1e-30F, 0.0F};
+  for (float& z : office.depth.mat) {
+    if (rng.uniform(0, 3) == 0) z = garbage[static_cast<std::size_t>(rng.uniform(0, 7))];
+  }
+  const std::array before{PreviousDepth{office.depth, Eigen::Isometry3d::Identity()}};
+  for (const DynamicsMode mode : {DynamicsMode::kPaper, DynamicsMode::kFull}) {
+    const DynamicsResult result = DynamicObjects({}, builtin_camera("tum_fr3"), mode)
+                                      .judge(office.depth, office.objects, before);
+    EXPECT_EQ(result.states[0].reason, StateReason::kDynamicClass);
+    EXPECT_GE(cv::countNonZero(result.mask.extended == 1), 100 * 350);
+    EXPECT_EQ(cv::countNonZero(result.mask.jumps & ~(office.depth.mat > 0)), 0);
+  }
+}
+
+// --- on truth -----------------------------------------------------------------------------------
+
+struct Result {
+  Coverage raw, extended, all;
+  std::vector<double> ms;
+
+  [[nodiscard]] double median_ms() const {
+    std::vector<double> sorted = ms;
+    std::ranges::sort(sorted);
+    return sorted[sorted.size() / 2];
+  }
+};
+
+/// A frame of a sequence with what tracking makes of its detections.
+struct SequenceFrame {
+  FramePtr frame;
+  FrameObjects objects;
+};
+
+SequenceFrame frame_with_objects(const TruthSequence& data, std::uint32_t index) {
+  ObjectTracker tracker({}, FillRule::kCausal);
+  const FramePtr before = data.sequence().read(FrameId(index - 1));
+  const FramePtr frame = data.sequence().read(FrameId(index));
+  (void)tracker.push({before->id, data.detections(index - 1), before->depth});
+  return {frame, *tracker.push({frame->id, data.detections(index), frame->depth})};
+}
+
+/// What a mode covers in every ninth frame of a sequence, true poses given.
+Result run_on(const TruthSequence& data, DynamicsMode mode) {
+  const TumSequence& sequence = data.sequence();
+  const Trajectory poses = read_trajectory(*sequence.groundtruth_file());
+  const DynamicObjects dynamics({}, sequence.camera(), mode);
+  const std::uint32_t back = mode == DynamicsMode::kFull ? 15 : 1;
+  Result result;
+  for (std::uint32_t i = 16; i < sequence.size(); i += 9) {
+    const auto [old, old_objects] = frame_with_objects(data, i - back);
+    const auto [frame, objects] = frame_with_objects(data, i);
+    const std::array before{PreviousDepth{
+        old->depth,
+        pose_at(poses, frame->stamp.seconds).inverse() * pose_at(poses, old->stamp.seconds),
+        dynamics.judge(old->depth, old_objects, {}).mask.extended}};
+    const auto begin = std::chrono::steady_clock::now();
+    const DynamicsResult judged = dynamics.judge(frame->depth, objects, before);
+    const std::chrono::duration<double, std::milli> spent =
+        std::chrono::steady_clock::now() - begin;
+    result.ms.push_back(spent.count());
+    const TruthSequence::Frame truth = data.truth(i);
+    result.raw.add(judged.mask.raw, truth);
+    result.extended.add(judged.mask.extended, truth);
+    result.all.add(judged.mask.extended | judged.mask.jumps, truth);
+  }
+  return result;
+}
+
+void print(const char* what, const Result& result) {
+  const auto line = [](const Coverage& c) {
+    return fmt::format(
+        "IoU {:.3f} recall {:.3f} wrong {:.4f}", c.iou(), c.recall(), c.wrong_share());
+  };
+  fmt::print("{}: raw {}; extended {}; with jumps {}; {:.2f} ms\n",
+             what,
+             line(result.raw),
+             line(result.extended),
+             line(result.all),
+             result.median_ms());
+}
+
+TEST(DynamicObjects, CoverWhatMovesOnTruth) {
+  for (const char* name : {"twin_walking_xyz", "fr1_xyz_walkers"}) {
+    const std::unique_ptr<TruthSequence> data = TruthSequence::open(shared_data_folder() / name);
+    if (!data) GTEST_SKIP() << "the shared test data is absent (set STILLMAP_DATA)";
+    SCOPED_TRACE(name);
+    const Result mask = run_on(*data, DynamicsMode::kMask);
+    const Result paper = run_on(*data, DynamicsMode::kPaper);
+    const Result full = run_on(*data, DynamicsMode::kFull);
+    fmt::print("{}\n", name);
+    print("  mask", mask);
+    print("  paper", paper);
+    print("  full", full);
+    // Each stage finds more of what moves.
+    EXPECT_GT(paper.extended.recall(), paper.raw.recall());
+    EXPECT_GT(paper.all.recall(), paper.extended.recall());
+    EXPECT_GT(full.extended.recall(), full.raw.recall());
+    EXPECT_GT(full.all.recall(), full.extended.recall());
+    // Full finds more than the paper's way, and takes less of what stands.
+    EXPECT_GT(full.all.recall(), mask.all.recall() + 0.015);
+    EXPECT_GT(full.all.recall(), paper.all.recall());
+    EXPECT_LT(full.all.wrong_share(), 0.85 * paper.all.wrong_share());
+    EXPECT_GT(full.extended.iou(), paper.extended.iou());
+    EXPECT_GT(full.all.iou(), paper.all.iou());
+  }
+}
+
+}  // namespace
+}  // namespace stillmap

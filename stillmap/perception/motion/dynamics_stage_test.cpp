@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/perception/motion/dynamics_stage.hpp"
+
+#include <gtest/gtest.h>
+
+#include "stillmap/geometry/se3.hpp"
+
+namespace stillmap {
+namespace {
+
+const CameraModel& small_camera() {
+  static const CameraModel kCamera = [] {
+    CameraModel camera;
+    camera.width_px = 160;
+    camera.height_px = 120;
+    camera.fx = camera.fy = 130;
+    camera.cx = 80;
+    camera.cy = 60;
+    return camera;
+  }();
+  return kCamera;
+}
+
+const cv::Rect kPerson(60, 20, 40, 90);
+
+// A wall 3 m before the camera, with somebody at 1.5 m before it if wanted.
+RgbdFrame wall(bool with_person) {
+  RgbdFrame frame;
+  frame.depth = DepthImage(cv::Mat1f(120, 160, 3.0F));
+  if (with_person) cv::Mat1f(frame.depth.mat, kPerson).setTo(1.5F);
+  return frame;
+}
+
+FrameObjects person_found() {
+  FrameObjects objects;
+  cv::Mat1b mask(120, 160, std::uint8_t{0});
+  cv::Mat1b(mask, kPerson).setTo(1);
+  objects.mask = ObjectMask(mask);
+  objects.objects.push_back({{1, "person", 1.0F, {60, 20, 100, 110}}, TrackId(0), {}, {}});
+  return objects;
+}
+
+bool person_is_out(const FrameDynamics& dynamics) {
+  return dynamics.excluded(60, 80) != 0 && dynamics.excluded(60, 20) == 0;
+}
+
+using Pose = std::optional<Eigen::Isometry3d>;
+
+// At the world's origin, or turned about so that nothing of the wall is seen.
+Eigen::Isometry3d turned(double degrees) {
+  return make_pose(so3_exp(Eigen::Vector3d(0, degrees * 3.14159265358979 / 180, 0)),
+                   Eigen::Vector3d::Zero());
+}
+
+class DynamicsStageWhenLost : public testing::Test {
+ protected:
+  void SetUp() override {
+    for (int k = 0; k < 31; ++k) {
+      FrameDynamics dynamics = stage_.judge(wall(false), {}, turned(0));
+      stage_.remember(wall(false), turned(0), dynamics);
+    }
+    stage_.forget();
+  }
+
+  DynamicsStage stage_{{}, small_camera(), 0};
+};
+
+TEST_F(DynamicsStageWhenLost, TheNetworksPeopleAreOutWithoutAPose) {
+  EXPECT_TRUE(person_is_out(stage_.judge(wall(true), person_found(), std::nullopt)));
+}
+
+TEST_F(DynamicsStageWhenLost, WhoIsMissedIsSeenByWhatWasThereBefore) {
+  EXPECT_FALSE(person_is_out(stage_.judge(wall(true), {}, std::nullopt)));
+  // Found again in a frame that has him already, so that this frame tells nothing.
+  FrameDynamics found = stage_.judge(wall(true), {}, std::nullopt);
+  stage_.remember(wall(true), turned(0), found);
+  EXPECT_TRUE(person_is_out(stage_.judge(wall(true), {}, turned(0))));
+}
+
+TEST_F(DynamicsStageWhenLost, WhereNothingWasSeenTheFirstFrameTells) {
+  for (int k = 0; k < 3; ++k) {
+    FrameDynamics found = stage_.judge(wall(false), {}, Pose(turned(180)));
+    stage_.remember(wall(false), turned(180), found);
+    const FrameDynamics entered = stage_.judge(wall(true), {}, turned(180));
+    EXPECT_TRUE(person_is_out(entered)) << k;
+  }
+}
+
+TEST_F(DynamicsStageWhenLost, WhoStandsThereAllTheTimeIsNotSeenByDepth) {
+  FrameDynamics found = stage_.judge(wall(true), {}, Pose(turned(180)));
+  stage_.remember(wall(true), turned(180), found);
+  EXPECT_FALSE(person_is_out(stage_.judge(wall(true), {}, turned(180))));
+}
+
+}  // namespace
+}  // namespace stillmap

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "stillmap/core/ids.hpp"
+#include "stillmap/core/images.hpp"
+#include "stillmap/core/trajectory.hpp"
+#include "stillmap/geometry/camera.hpp"
+#include "stillmap/perception/detections/detections.hpp"
+#include "stillmap/perception/motion/depth_stability.hpp"
+#include "stillmap/perception/motion/dynamic_objects.hpp"
+#include "stillmap/perception/motion/static_matches.hpp"
+#include "stillmap/slam/features/features.hpp"
+
+namespace stillmap {
+
+/// What a feature off the masks is taken for. Of several, the later in kDynamic, kUnstableDepth,
+/// kMissingDepth, kStaticInBox, kStable gives way to the earlier.
+enum class FeatureVerdict : std::uint8_t {
+  kStable,
+  kMissingDepth,
+  kUnstableDepth,
+  kDynamic,      ///< in the box of something dynamic, and not seen to stand still
+  kStaticInBox,  ///< in such a box, and seen to stand still
+};
+
+struct RejectedFeature {
+  Eigen::Vector2f raw_px;
+  FeatureVerdict verdict = FeatureVerdict::kStable;
+};
+
+/// The features that may tell the pose, and what has become of all.
+struct FilteredFeatures {
+  Features features;
+  std::vector<FeatureVerdict> verdicts;  ///< of `features`
+  std::vector<RejectedFeature> dropped;  ///< of the others
+};
+
+/// The features of a frame, with what it takes to judge them.
+struct FeatureScene {
+  const Features& features;
+  const DepthImage& depth;
+  std::vector<PixelBox> dynamic_boxes;
+  FeaturesPtr previous;  ///< of the frame before, as they were extracted; may be null
+  std::optional<Eigen::Isometry3d> T_current_previous;  ///< as expected
+  FrameId frame;
+};
+
+struct FeatureFilterConfig {
+  DepthStabilityConfig depth_stability;
+  StaticMatchesConfig static_matches;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit.group("depth_stability", self.depth_stability);
+    visit.group("static_matches", self.static_matches);
+  }
+};
+
+/// Judges features by their depth and, in the boxes of what moves, by their motion: sections 6 and
+/// 7 of the method. kMask judges nothing, kPaper all; kFull leaves the boxes alone unless told to
+/// judge them, and keeps features without depth. A feature in a box that has no match in the frame
+/// before stays. Keeps nothing between frames; the same input and seed give the same bits.
+class FeatureFilter {
+ public:
+  FeatureFilter(const FeatureFilterConfig& config,
+                const CameraModel& camera,
+                DynamicsMode mode,
+                std::uint32_t seed);
+
+  [[nodiscard]] FilteredFeatures filter(const FeatureScene& scene) const;
+
+ private:
+  [[nodiscard]] std::vector<FeatureVerdict> judge(const FeatureScene& scene) const;
+  [[nodiscard]] std::vector<std::optional<MatchVerdict>> judge_boxes(
+      const FeatureScene& scene, const std::vector<std::uint8_t>& boxed) const;
+  [[nodiscard]] bool dropped(FeatureVerdict verdict) const;
+  [[nodiscard]] bool without_depth(FeatureVerdict verdict) const;
+
+  FeatureFilterConfig config_;
+  CameraModel camera_;
+  DynamicsMode mode_;
+  std::uint32_t seed_;
+};
+
+}  // namespace stillmap

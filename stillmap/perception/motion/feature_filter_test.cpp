@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/perception/motion/feature_filter.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "stillmap/geometry/se3.hpp"
+#include "stillmap/perception/motion/consecutive_matches.hpp"
+#include "stillmap/slam/features/feature_selection.hpp"
+#include "tests/support/feature_images.hpp"
+
+namespace stillmap {
+namespace {
+
+constexpr int kRoomFeatures = 120;  // outside of the box, all standing
+constexpr int kBoxFeatures = 40;    // inside: the first half moves, the other stands
+const PixelBox kBox{400, 100, 560, 380};
+
+/// Two frames of a made room: a camera that slides, points that stand and points that move.
+struct TwoFrames {
+  CameraModel camera = builtin_camera("tum_fr3");
+  Eigen::Isometry3d T_current_previous =
+      make_pose(so3_exp({0.004, -0.008, 0.002}), {0.03, 0.008, 0.004});
+  Features previous, current;
+  DepthImage depth{cv::Mat1f(480, 640, 2.0F)};
+};
+
+void add(Features& features,
+         const Eigen::Vector2d& px,
+         double depth_m,
+         const Descriptor& descriptor) {
+  features.raw_px.emplace_back(px.cast<float>());
+  features.ideal_px.emplace_back(px.cast<float>());
+  features.px.emplace_back(px.cast<float>());
+  features.sensor_depth_m.push_back(static_cast<float>(depth_m));
+  features.depth_m.push_back(static_cast<float>(depth_m));
+  features.level.push_back(0);
+  features.angle_deg.push_back(0);
+  features.descriptors.push_back(descriptor);
+}
+
+Features gridded(const Features& features, const CameraModel& camera) {
+  return select_features(features, std::vector<std::uint8_t>(features.size(), 1), camera);
+}
+
+TwoFrames two_frames() {
+  TwoFrames two;
+  TestDice dice(5);
+  const auto see = [&](const Eigen::Vector2d& px, const Eigen::Vector3d& motion) {
+    const double depth = 1.5 + static_cast<double>(dice.uniform(0, 2));
+    const Eigen::Vector3d p = two.T_current_previous * (two.camera.unproject(px, depth) + motion);
+    const Descriptor looks = dice.descriptor();
+    add(two.previous, px, depth, looks);
+    add(two.current, two.camera.project(p), p.z(), looks);
+  };
+  for (int i = 0; i < kRoomFeatures; ++i) {
+    see(dice.point(40, 360, 440).cast<double>(), Eigen::Vector3d::Zero());
+  }
+  for (int i = 0; i < kBoxFeatures; ++i) {
+    const bool moves = i < kBoxFeatures / 2;
+    const Eigen::Vector2d px(static_cast<double>(dice.uniform(440, 540)),
+                             static_cast<double>(dice.uniform(140, 340)));
+    see(px, moves ? Eigen::Vector3d(0.0, 0.05, 0.0) : Eigen::Vector3d::Zero());
+  }
+  // The depth image is flat at 2 m except where a test changes it.
+  two.previous = gridded(two.previous, two.camera);
+  two.current = gridded(two.current, two.camera);
+  return two;
+}
+
+FeatureScene scene_of(const TwoFrames& two) {
+  return {two.current,
+          two.depth,
+          {kBox},
+          std::make_shared<const Features>(two.previous),
+          two.T_current_previous,
+          FrameId(3)};
+}
+
+std::size_t count(const FilteredFeatures& filtered, FeatureVerdict verdict) {
+  const auto dropped = std::ranges::count(filtered.dropped, verdict, &RejectedFeature::verdict);
+  return static_cast<std::size_t>(std::ranges::count(filtered.verdicts, verdict) + dropped);
+}
+
+FeatureFilterConfig without_depth_stability() {
+  FeatureFilterConfig config;
+  config.depth_stability.enabled = false;
+  return config;
+}
+
+TEST(MatchConsecutive, FindsEveryPointOnceWhetherItMovesOrNot) {
+  const TwoFrames two = two_frames();
+  const std::vector<FeatureMatch> matches =
+      match_consecutive(two.previous, two.current, two.camera, two.T_current_previous, 25);
+  EXPECT_EQ(matches.size(), two.current.size());
+  for (const FeatureMatch& match : matches) EXPECT_EQ(match.query, match.feature);
+}
+
+TEST(MatchConsecutive, SearchesNoFartherThanTold) {
+  const TwoFrames two = two_frames();
+  const std::vector<FeatureMatch> matches =
+      match_consecutive(two.previous, two.current, two.camera, two.T_current_previous, 2);
+  // What stands is where it should be; what moves goes at least 0.05 m * 525 / 3.5 m = 7 pixels.
+  EXPECT_EQ(matches.size(), static_cast<std::size_t>(kRoomFeatures + kBoxFeatures / 2));
+}
+
+TEST(FeatureFilter, PaperDropsWhatMovesInABoxAndNothingThatStands) {
+  const TwoFrames two = two_frames();
+  const FeatureFilter filter(without_depth_stability(), two.camera, DynamicsMode::kPaper, 1);
+  const FilteredFeatures filtered = filter.filter(scene_of(two));
+  EXPECT_EQ(count(filtered, FeatureVerdict::kDynamic), static_cast<std::size_t>(kBoxFeatures / 2));
+  EXPECT_EQ(filtered.dropped.size(), static_cast<std::size_t>(kBoxFeatures / 2));
+  EXPECT_EQ(count(filtered, FeatureVerdict::kStaticInBox),
+            static_cast<std::size_t>(kBoxFeatures / 2));
+  EXPECT_EQ(count(filtered, FeatureVerdict::kStable), static_cast<std::size_t>(kRoomFeatures));
+  EXPECT_EQ(filtered.features.size(), filtered.verdicts.size());
+  // The moving ones are those just before the last of all features.
+  for (const RejectedFeature& dropped : filtered.dropped) {
+    const auto at = std::ranges::find(two.current.raw_px, dropped.raw_px);
+    const auto index = at - two.current.raw_px.begin();
+    EXPECT_GE(index, kRoomFeatures);
+    EXPECT_LT(index, kRoomFeatures + kBoxFeatures / 2);
+  }
+}
+
+TEST(FeatureFilter, WithoutStaticMatchesWhatMovesStays) {
+  const TwoFrames two = two_frames();
+  FeatureFilterConfig config = without_depth_stability();
+  config.static_matches.enabled = false;
+  const FilteredFeatures filtered =
+      FeatureFilter(config, two.camera, DynamicsMode::kPaper, 1).filter(scene_of(two));
+  EXPECT_EQ(filtered.features.size(), two.current.size());
+  EXPECT_TRUE(filtered.dropped.empty());
+}
+
+TEST(FeatureFilter, WhatHasNoMatchInTheFrameBeforeStays) {
+  const TwoFrames two = two_frames();
+  FeatureScene scene = scene_of(two);
+  scene.previous = nullptr;
+  const FeatureFilter filter(without_depth_stability(), two.camera, DynamicsMode::kPaper, 1);
+  EXPECT_EQ(filter.filter(scene).features.size(), two.current.size());
+}
+
+TEST(FeatureFilter, FullJudgesBoxesOnlyWhenTold) {
+  const TwoFrames two = two_frames();
+  FeatureFilterConfig config = without_depth_stability();
+  EXPECT_TRUE(FeatureFilter(config, two.camera, DynamicsMode::kFull, 1)
+                  .filter(scene_of(two))
+                  .dropped.empty());
+  config.static_matches.in_full = true;
+  EXPECT_EQ(FeatureFilter(config, two.camera, DynamicsMode::kFull, 1)
+                .filter(scene_of(two))
+                .dropped.size(),
+            static_cast<std::size_t>(kBoxFeatures / 2));
+}
+
+// A step of a metre through one feature's surroundings, and a hole in another's.
+struct DepthFaults {
+  TwoFrames two = two_frames();
+  std::size_t jump = 5, hole = 9;
+
+  DepthFaults() {
+    // Steady depth varies a little, as any sensor's does.
+    TestDice dice(11);
+    for (float& z : two.depth.mat) z += dice.uniform(-0.004F, 0.004F);
+    const auto pixel = [&](std::size_t i) {
+      return cv::Point(cvRound(two.current.raw_px[i].x()), cvRound(two.current.raw_px[i].y()));
+    };
+    two.depth.mat(pixel(jump) + cv::Point(1, 0)) = 3.0F;
+    two.depth.mat(pixel(hole) + cv::Point(0, 1)) = 0.0F;
+  }
+
+  [[nodiscard]] FilteredFeatures filtered(DynamicsMode mode) const {
+    return FeatureFilter({}, two.camera, mode, 1).filter(scene_of(two));
+  }
+  [[nodiscard]] std::size_t index_of(const FilteredFeatures& filtered, std::size_t i) const {
+    const auto at = std::ranges::find(filtered.features.raw_px, two.current.raw_px[i]);
+    return static_cast<std::size_t>(at - filtered.features.raw_px.begin());
+  }
+};
+
+TEST(FeatureFilter, PaperDropsFeaturesOfUnstableAndOfMissingDepth) {
+  const DepthFaults faults;
+  const FilteredFeatures filtered = faults.filtered(DynamicsMode::kPaper);
+  EXPECT_EQ(faults.index_of(filtered, faults.jump), filtered.features.size());
+  EXPECT_EQ(faults.index_of(filtered, faults.hole), filtered.features.size());
+  EXPECT_EQ(count(filtered, FeatureVerdict::kMissingDepth), 1U);
+  EXPECT_GE(count(filtered, FeatureVerdict::kUnstableDepth), 1U);
+}
+
+TEST(FeatureFilter, FullKeepsThemAndTrustsNoUnstableDepth) {
+  const DepthFaults faults;
+  const FilteredFeatures filtered = faults.filtered(DynamicsMode::kFull);
+  ASSERT_EQ(filtered.features.size(), faults.two.current.size());
+  EXPECT_EQ(filtered.features.depth_m[faults.jump], 0.0F);
+  EXPECT_EQ(filtered.features.sensor_depth_m[faults.jump], 0.0F);
+  EXPECT_EQ(filtered.features.depth_m[faults.hole], faults.two.current.depth_m[faults.hole]);
+}
+
+TEST(FeatureFilter, MaskJudgesNothing) {
+  const DepthFaults faults;
+  const FilteredFeatures filtered = faults.filtered(DynamicsMode::kMask);
+  EXPECT_EQ(count(filtered, FeatureVerdict::kStable), faults.two.current.size());
+  EXPECT_EQ(filtered.features.depth_m, faults.two.current.depth_m);
+}
+
+TEST(FeatureFilter, TheSameSeedGivesTheSameBits) {
+  const TwoFrames two = two_frames();
+  const FeatureFilter filter({}, two.camera, DynamicsMode::kPaper, 7);
+  const FilteredFeatures a = filter.filter(scene_of(two)), b = filter.filter(scene_of(two));
+  EXPECT_EQ(a.verdicts, b.verdicts);
+  EXPECT_EQ(a.features.raw_px, b.features.raw_px);
+}
+
+}  // namespace
+}  // namespace stillmap

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "stillmap/core/fields.hpp"
+#include "stillmap/perception/objects/object_depth.hpp"
+#include "stillmap/perception/objects/object_view.hpp"
+
+namespace stillmap {
+
+struct MaskExtensionConfig {
+  bool enabled = true;
+  std::string variant = "connected";
+  double mad_factor = 3.0;
+  int whole_box_px = 5000;
+  double reach_m = 0.35;
+  double interval_margin_m = 0.1;
+  double box_margin = 0.15;
+  double step_m = 0.01;
+  double step_per_m = 0.003;
+  int grow_px = 40;
+  double min_mask_share = 0.4;
+  bool drop_outliers = false;
+  double large_part = 0.05;
+  double static_m = 0.02;
+  double static_per_m = 0.005;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("enabled", self.enabled, FieldInfo{"extend the masks of what moves"});
+    visit("variant",
+          self.variant,
+          FieldInfo{"how masks are extended: Fan 2020, or what hangs together in depth",
+                    "",
+                    0,
+                    0,
+                    {"paper", "connected"}});
+    visit("mad_factor",
+          self.mad_factor,
+          FieldInfo{"depths farther from the median, in scaled MADs, are outliers", "", 0.1, 100});
+    visit("whole_box_px",
+          self.whole_box_px,
+          FieldInfo{"paper: a smaller mask gives way to its box", "pixels at 640x480", 0, 307200});
+    visit("reach_m",
+          self.reach_m,
+          FieldInfo{"connected: depths this close to the median are no outliers", "m", 0, 10});
+    visit("interval_margin_m",
+          self.interval_margin_m,
+          FieldInfo{"connected: how far beyond the mask's depths to extend", "m", 0, 10});
+    visit("box_margin",
+          self.box_margin,
+          FieldInfo{"connected: how far beyond the box, as a share of its size", "", 0, 2});
+    visit("step_m",
+          self.step_m,
+          FieldInfo{"connected: depth step between neighbours, besides noise", "m", 0, 1});
+    visit("step_per_m",
+          self.step_per_m,
+          FieldInfo{"connected: growth of that step with depth squared", "1/m", 0, 1});
+    visit("grow_px",
+          self.grow_px,
+          FieldInfo{"connected: longest way from the mask", "pixels at 640x480", 0, 1000});
+    visit("min_mask_share",
+          self.min_mask_share,
+          FieldInfo{"connected: what is less mask than this is not extended", "", 0, 1});
+    visit("large_part",
+          self.large_part,
+          FieldInfo{
+              "connected: a larger part of the mask belongs to the object at any depth", "", 0, 1});
+    visit("static_m",
+          self.static_m,
+          FieldInfo{
+              "connected: this close to what is known to stand still does not join", "m", 0, 1});
+    visit("static_per_m",
+          self.static_per_m,
+          FieldInfo{"connected: growth of that distance with depth squared", "1/m", 0, 1});
+    visit("drop_outliers",
+          self.drop_outliers,
+          FieldInfo{"connected: mask pixels apart from the object in depth leave it"});
+  }
+};
+
+/// Where the object of a mask is, more fully than the mask says: Fan 2020, Alg. 1, Eqs. (2)-(5).
+///
+/// `paper`: the mask, and the pixels of the box whose depth lies strictly between the least and the
+/// greatest of the mask's own, outliers removed; the whole box as well where the mask has fewer
+/// than `whole_box_px`.
+///
+/// `connected`: a chair or a wall at a limb's depth does not join. Starting from the mask's pixels
+/// without outliers, neighbours join as long as the depth steps between them are small, they are in
+/// the interval of the object's depths or in the mask, and not far from mask and box. Parts that
+/// are mostly something else keep their mask alone. Holes without depth inside are filled. Depth is
+/// looked at in every second row and column. A mask without any depth is kept as it is.
+///
+/// `known_static`, if not empty, has the depth of what is known to stand still, for every second
+/// pixel of every second row, 0 where nothing is: pixels of that depth do not join (`connected`).
+///
+/// `area` is that of the object's id in `object.mask`, of which `object.depth` has the size.
+/// The patch may be empty.
+[[nodiscard]] PixelPatch extend_mask(const ObjectView& object,
+                                     const MaskArea& area,
+                                     const ObjectDepths& depths,
+                                     const MaskExtensionConfig& config,
+                                     const cv::Mat1f& known_static = {});
+
+/// The mask of an object as it is.
+[[nodiscard]] PixelPatch mask_patch(const ObjectView& object, const MaskArea& area);
+
+/// The outliers that the variant of `config` wants removed from the depths.
+[[nodiscard]] OutlierRule outlier_rule(const MaskExtensionConfig& config);
+
+}  // namespace stillmap

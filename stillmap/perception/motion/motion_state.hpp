@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "stillmap/core/fields.hpp"
+#include "stillmap/geometry/camera.hpp"
+#include "stillmap/perception/motion/dynamic_objects.hpp"
+#include "stillmap/perception/objects/frame_objects.hpp"
+
+namespace stillmap {
+
+struct MotionStateConfig {
+  int window_frames = 10;
+  int min_frames = 5;
+  double moving_m_s = 0.25;
+  double still_m_s = 0.12;
+  double certainty = 3.0;
+  double depth_noise_per_m = 0.0015;
+  double border_factor = 2.0;
+  int calm_frames = 5;
+  double vacated_share = 0.15;
+  double vacated_m = 0.05;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("window_frames",
+          self.window_frames,
+          FieldInfo{"positions of an object that its velocity comes from", "frames", 3, 100});
+    visit("min_frames",
+          self.min_frames,
+          FieldInfo{"positions that it takes at least", "frames", 3, 100});
+    visit("moving_m_s",
+          self.moving_m_s,
+          FieldInfo{"a still object that is faster, beyond the error, moves", "m/s", 0, 10});
+    visit("still_m_s",
+          self.still_m_s,
+          FieldInfo{"a moving object that is slower for some frames is still", "m/s", 0, 10});
+    visit("certainty",
+          self.certainty,
+          FieldInfo{"standard errors of the velocity that count as its error", "", 0, 100});
+    visit("depth_noise_per_m",
+          self.depth_noise_per_m,
+          FieldInfo{"least error of a position, growing with depth squared", "1/m", 0, 1});
+    visit("border_factor",
+          self.border_factor,
+          FieldInfo{"how much faster it must be where the image cuts it off", "", 1, 100});
+    visit("calm_frames",
+          self.calm_frames,
+          FieldInfo{"frames that it takes to be still again", "frames", 1, 1000});
+    visit("vacated_share",
+          self.vacated_share,
+          FieldInfo{"what moves must have left this much of where it was", "", 0, 1});
+    visit("vacated_m",
+          self.vacated_m,
+          FieldInfo{"change of depth that shows it left, besides noise", "m", 0, 10});
+  }
+};
+
+enum class Motion : std::uint8_t {
+  kUnknown,  ///< not seen often enough, or without depth
+  kStill,
+  kMoving,
+  kMovedBySomeone,  ///< moving, and somebody is at it
+};
+[[nodiscard]] std::string_view motion_name(Motion motion);
+
+/// What is known of an object's motion in a frame.
+struct ObjectMotion {
+  TrackId track;
+  Motion motion = Motion::kUnknown;
+  std::optional<Eigen::Vector3d> p_world;  ///< middle of what is seen of it; none without depth
+  Eigen::Vector3d velocity_m_s = Eigen::Vector3d::Zero();  ///< in the world; 0 where unknown
+  double velocity_error_m_s = 0;                           ///< standard error of its length
+  std::optional<TrackId> by;                               ///< who moves it
+};
+
+/// The slope of positions over time that is the median of those between two of them, for each axis,
+/// and its standard error.
+struct RobustVelocity {
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+  double error = 0;
+};
+[[nodiscard]] RobustVelocity robust_velocity(std::span<const double> stamps_s,
+                                             std::span<const Eigen::Vector3d> positions,
+                                             double least_noise_m);
+
+/// Follows the middle of each tracked object in the world, and says which of them move.
+///
+/// An object's middle is the median column and row of its pixels at the median of their depths. Its
+/// velocity is the median slope over the last frames (Theil-Sen), with an error from the scatter
+/// about it, but no less than depth noise makes; so the farther an object, or the more its mask
+/// flickers, the faster it must be to count as moving. And it must have left some of where it was:
+/// a part of its surface of some frames ago, where one now sees farther or an other part of it. So
+/// what is covered up, or cut off by the image, bit by bit does not seem to move. Boxes that were
+/// filled in are no evidence.
+class MotionStates {
+ public:
+  MotionStates(const MotionStateConfig& config, const CameraModel& camera);
+
+  /// Takes a frame, with what DynamicObjects made of it; gives the motion of its objects in their
+  /// order. Frames in which an object was detected itself come in the order of their stamps.
+  [[nodiscard]] std::vector<ObjectMotion> update(const FrameObjects& objects,
+                                                 const DepthImage& depth,
+                                                 std::span<const ObjectState> states,
+                                                 const Eigen::Isometry3d& T_world_camera);
+
+  /// The tracks that move as of the last frame, in the order of their numbers.
+  [[nodiscard]] std::vector<TrackId> moving() const;
+
+ private:
+  struct Position {
+    double stamp_s = 0;
+    Eigen::Vector3d p_world;
+    double noise_m = 0;
+    std::vector<Eigen::Vector3d> surface;  // some of what was seen of it, in the world
+  };
+  struct View {
+    const FrameObjects& objects;
+    const DepthImage& depth;
+    const Eigen::Isometry3d& T_world_camera;
+  };
+  struct Track {
+    TrackId id;
+    std::deque<Position> positions;
+    RobustVelocity velocity;
+    bool moving = false, known = false;
+    int calm = 0;  // frames in a row in which it was slow
+    double last_seen_s = 0;
+  };
+
+  [[nodiscard]] Track& track_of(TrackId id);
+  [[nodiscard]] std::optional<Position> position_of(const View& view,
+                                                    const TrackedObject& object,
+                                                    const ObjectState& state) const;
+  [[nodiscard]] std::vector<Eigen::Vector3d> surface_of(const View& view,
+                                                        const TrackedObject& object,
+                                                        const ObjectState& state) const;
+  [[nodiscard]] double vacated(const Position& old, const View& view, int id) const;
+  [[nodiscard]] RobustVelocity velocity_of(const Track& track) const;
+  [[nodiscard]] ObjectMotion motion_of(const Track& track, const ObjectState& state) const;
+  void add_position(Track& track, Position position) const;
+  void decide(Track& track, bool cut_off, double vacated_share) const;
+
+  MotionStateConfig config_;
+  CameraModel camera_;
+  std::vector<Track> tracks_;  // by id
+};
+
+}  // namespace stillmap

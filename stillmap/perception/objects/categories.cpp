@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/perception/objects/categories.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+
+#include "stillmap/core/error.hpp"
+#include "stillmap/core/nearest_name.hpp"
+#include "stillmap/perception/detections/class_names.hpp"
+
+namespace stillmap {
+namespace {
+
+constexpr std::string_view kBlanks = " \t";
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(kBlanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+}
+
+std::string checked_name(std::string_view key, std::string_view name) {
+  if (name.empty()) {
+    throw Error("{}: a name is empty: expected names separated by single commas", key);
+  }
+  const std::string coco = coco_name(name);
+  if (is_coco_class(coco)) return coco;
+  const std::span<const std::string_view> names = coco_class_names();
+  const std::vector<std::string> known(names.begin(), names.end());
+  throw Error("{}: expected classes of COCO, got '{}': {}",
+              key,
+              name.substr(0, 60),
+              name_hint(name.substr(0, 60), known));
+}
+
+}  // namespace
+
+CategoryTable::CategoryTable(const CategoryConfig& config) {
+  add("categories.dynamic", config.dynamic, Category::kDynamic);
+  add("categories.potentially_dynamic", config.potentially_dynamic, Category::kPotentiallyDynamic);
+}
+
+void CategoryTable::add(std::string_view key, const std::string& list, Category category) {
+  std::string_view rest = trimmed(list);
+  bool more = !rest.empty();  // an empty list is one: nothing is in this category
+  while (more) {
+    const std::size_t comma = rest.find(',');
+    more = comma != std::string_view::npos;
+    const std::string name = checked_name(key, trimmed(rest.substr(0, comma)));
+    rest = more ? rest.substr(comma + 1) : std::string_view{};
+    const auto place = std::ranges::lower_bound(entries_, name, {}, &Entry::name);
+    if (place != entries_.end() && place->name == name) {
+      throw Error("{}: '{}' stands twice in the lists of categories: expected once", key, name);
+    }
+    entries_.insert(place, {name, category});
+  }
+}
+
+Category CategoryTable::of(std::string_view class_name) const {
+  const std::string name = coco_name(class_name);
+  const auto place = std::ranges::lower_bound(entries_, name, {}, &Entry::name);
+  return place != entries_.end() && place->name == name ? place->category : Category::kStatic;
+}
+
+std::string_view category_name(Category category) {
+  switch (category) {
+    case Category::kDynamic:
+      return "dynamic";
+    case Category::kPotentiallyDynamic:
+      return "potentially dynamic";
+    case Category::kStatic:
+      break;
+  }
+  return "static";
+}
+
+}  // namespace stillmap

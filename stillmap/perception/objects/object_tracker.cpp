@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/perception/objects/object_tracker.hpp"
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <utility>
+
+#include "stillmap/core/error.hpp"
+#include "stillmap/perception/detections/box_overlap.hpp"
+#include "stillmap/perception/objects/boxes.hpp"
+
+namespace stillmap {
+namespace {
+
+constexpr std::size_t kMostObjects = 255;  // what the ids of a mask can tell apart
+
+/// The objects of a frame with their tracks, numbered by their place, and a mask of its own.
+FrameObjects detected_objects(const ObservedFrame& frame, const std::vector<TrackId>& tracks) {
+  FrameObjects result{frame.id, frame.detections.stamp, {}, {}};
+  std::array<std::uint8_t, 256> place{};
+  for (const DetectedObject& object : frame.detections.objects) {
+    STILLMAP_CHECK(object.id > 0 && object.id <= 255);
+    const std::size_t number = result.objects.size() + 1;
+    place[static_cast<std::size_t>(object.id)] = static_cast<std::uint8_t>(number);
+    TrackedObject tracked{object, tracks[number - 1], std::nullopt, MaskSource::kDetected};
+    tracked.detection.id = static_cast<int>(number);
+    result.objects.push_back(std::move(tracked));
+  }
+  const cv::Mat1b& ids = frame.detections.mask.mat;
+  if (ids.empty()) return result;
+  result.mask = ObjectMask(cv::Mat1b(ids.size()));
+  for (int row = 0; row < ids.rows; ++row) {
+    const std::uint8_t* from = ids[row];
+    std::transform(
+        from, from + ids.cols, result.mask.mat[row], [&](std::uint8_t id) { return place[id]; });
+  }
+  return result;
+}
+
+/// Gives `id` the pixels of a patch that nobody has.
+void paint(ObjectMask& mask, const PixelPatch& patch, std::uint8_t id) {
+  for (int v = 0; v < patch.area.height; ++v) {
+    std::uint8_t* ids = mask.mat[patch.area.y + v] + patch.area.x;
+    const std::uint8_t* pixels = patch.pixels[v];
+    for (int u = 0; u < patch.area.width; ++u) {
+      if (pixels[u] != 0 && ids[u] == 0) ids[u] = id;
+    }
+  }
+}
+
+}  // namespace
+
+ObjectTracker::ObjectTracker(const ObjectTrackerConfig& config, FillRule rule)
+    : config_(config), rule_(rule) {}
+
+PixelBox ObjectTracker::predicted_box(const Track& track, double stamp_s) {
+  const double elapsed = stamp_s - track.seen_s;
+  PixelBox box = track.box;
+  box.x0 += track.velocity.x0 * elapsed;
+  box.y0 += track.velocity.y0 * elapsed;
+  box.x1 += track.velocity.x1 * elapsed;
+  box.y1 += track.velocity.y1 * elapsed;
+  // Sides that move towards each other must not meet: such a box is where the last one was.
+  return box.width() < 1 || box.height() < 1 ? track.box : box;
+}
+
+void ObjectTracker::see(Track& track, const DetectedObject& object, double stamp_s) const {
+  const double elapsed = stamp_s - track.seen_s;
+  if (track.sightings > 0) {
+    // The first velocity is all there is; later ones are averaged, as boxes jitter.
+    const double gain = track.sightings == 1 ? 1.0 : config_.velocity_gain;
+    const auto mix = [&](double& velocity, double from, double to) {
+      velocity += gain * ((to - from) / elapsed - velocity);
+    };
+    mix(track.velocity.x0, track.box.x0, object.box.x0);
+    mix(track.velocity.y0, track.box.y0, object.box.y0);
+    mix(track.velocity.x1, track.box.x1, object.box.x1);
+    mix(track.velocity.y1, track.box.y1, object.box.y1);
+  }
+  track.box = object.box;
+  track.seen_s = stamp_s;
+  track.seen_at = pushed_;
+  ++track.sightings;
+}
+
+std::vector<TrackId> ObjectTracker::associate(const ObservedFrame& frame) {
+  struct Pair {
+    double iou;
+    std::size_t track, object;
+  };
+  const std::vector<DetectedObject>& objects = frame.detections.objects;
+  const double now = frame.detections.stamp.seconds;
+  std::vector<Pair> pairs;
+  for (std::size_t t = 0; t < tracks_.size(); ++t) {
+    const PixelBox expected = predicted_box(tracks_[t], now);
+    for (std::size_t o = 0; o < objects.size(); ++o) {
+      if (objects[o].class_name != tracks_[t].class_name) continue;
+      const double iou = box_iou(expected, objects[o].box);
+      if (iou >= config_.min_iou) pairs.push_back({iou, t, o});
+    }
+  }
+  // Pairs were made in the order of tracks and objects, which decides between equals.
+  std::ranges::stable_sort(pairs, std::ranges::greater{}, &Pair::iou);
+  std::vector<TrackId> found(objects.size());
+  std::vector<bool> taken(tracks_.size(), false);
+  for (const Pair& pair : pairs) {
+    if (taken[pair.track] || found[pair.object].valid()) continue;
+    taken[pair.track] = true;
+    found[pair.object] = tracks_[pair.track].id;
+    see(tracks_[pair.track], objects[pair.object], now);
+  }
+  for (std::size_t o = 0; o < objects.size(); ++o) {
+    if (found[o].valid()) continue;
+    found[o] = TrackId(next_track_++);
+    Track track;
+    track.id = found[o];
+    track.class_name = objects[o].class_name;
+    see(track, objects[o], now);
+    tracks_.push_back(std::move(track));
+  }
+  return found;
+}
+
+std::optional<FrameObjects> ObjectTracker::push(ObservedFrame frame) {
+  STILLMAP_CHECK(held_.empty() ||
+                 held_.back().frame.detections.stamp.seconds < frame.detections.stamp.seconds);
+  STILLMAP_CHECK(frame.detections.mask.mat.empty() ||
+                 frame.detections.mask.mat.size() == frame.depth.mat.size());
+  const auto search = static_cast<std::size_t>(config_.search_frames);
+  // A gap may be as long as the search both ways.
+  const std::size_t longest_gap = std::max<std::size_t>(2 * search, 1);
+  std::erase_if(tracks_, [&](const Track& t) { return pushed_ - t.seen_at > longest_gap; });
+  std::vector<TrackId> tracks = associate(frame);
+  auto areas = std::make_shared<const MaskAreas>(mask_areas(frame.detections.mask));
+  held_.push_back({std::move(frame), pushed_, std::move(tracks), std::move(areas)});
+  ++pushed_;
+  const std::size_t delay = rule_ == FillRule::kBothWays ? search : 0;
+  if (pushed_ <= delay) return std::nullopt;
+  const std::size_t leaving = left_++;
+  FrameObjects result = leave(held_[leaving - held_.front().position]);
+  // carry_to() needs the last one in any case.
+  const std::size_t keep = rule_ == FillRule::kCausal ? std::max<std::size_t>(search, 1) : search;
+  while (!held_.empty() && held_.front().position + keep <= leaving) held_.pop_front();
+  return result;
+}
+
+FrameObjects ObjectTracker::carry_to(FrameId frame,
+                                     const Stamp& stamp,
+                                     const DepthImage& depth) const {
+  STILLMAP_CHECK(rule_ == FillRule::kCausal);
+  if (held_.empty()) return {frame, stamp, {}, {}};
+  STILLMAP_CHECK(held_.back().frame.detections.stamp.seconds < stamp.seconds);
+  return leave({{frame, {stamp, {}, {}}, depth}, pushed_, {}, nullptr, false});
+}
+
+std::vector<FrameObjects> ObjectTracker::flush() {
+  std::vector<FrameObjects> rest;
+  for (; left_ < pushed_; ++left_) {
+    rest.push_back(leave(held_[left_ - held_.front().position]));
+  }
+  held_.clear();
+  return rest;
+}
+
+std::optional<ObjectTracker::Sighting> ObjectTracker::sighting(const Track& track,
+                                                               const Held& held,
+                                                               int direction) const {
+  const std::size_t here = held.position - held_.front().position;
+  // The last frame that was looked at tells of one that was not, however far fills may reach.
+  const int reach = held.looked_at ? config_.search_frames : std::max(config_.search_frames, 1);
+  for (int distance = 1; distance <= reach; ++distance) {
+    const auto step = static_cast<std::size_t>(distance);
+    if (direction < 0 ? step > here : here + step >= held_.size()) break;
+    const Held& other = held_[direction < 0 ? here - step : here + step];
+    const auto place = std::ranges::find(other.tracks, track.id);
+    if (place == other.tracks.end()) continue;
+    return Sighting{&other, static_cast<std::size_t>(place - other.tracks.begin()), distance};
+  }
+  return std::nullopt;
+}
+
+std::optional<ObjectTracker::Fill> ObjectTracker::fill_of(const Track& track,
+                                                          const Held& held) const {
+  const auto box_of = [](const Sighting& s) {
+    return s.held->frame.detections.objects[s.object].box;
+  };
+  const std::optional<Sighting> before = sighting(track, held, -1);
+  const std::optional<Sighting> after = sighting(track, held, +1);
+  if (!before && !after) return std::nullopt;
+  Fill fill;
+  fill.nearest = before && (!after || before->distance <= after->distance) ? *before : *after;
+  if (before && after) {
+    fill.box = box_between(box_of(*before), before->distance, box_of(*after), after->distance);
+  } else if (rule_ == FillRule::kCausal) {
+    fill.box = predicted_box(track, held.frame.detections.stamp.seconds);
+  } else {
+    fill.box = box_of(fill.nearest);
+  }
+  if (before) fill.origin.before = before->held->frame.id;
+  if (after) fill.origin.after = after->held->frame.id;
+  return fill;
+}
+
+bool ObjectTracker::is_duplicate(const Track& track, const Fill& fill, const Held& held) const {
+  return std::ranges::any_of(held.frame.detections.objects, [&](const DetectedObject& object) {
+    return object.class_name == track.class_name &&
+           box_iou(object.box, fill.box) > config_.duplicate_iou;
+  });
+}
+
+PropagatedMask ObjectTracker::carried_mask(const Fill& fill, const Held& held) const {
+  const ObservedFrame& source = fill.nearest.held->frame;
+  const DetectedObject& object = source.detections.objects[fill.nearest.object];
+  const ObjectView view{source.depth, source.detections.mask, object.id, object.box};
+  const MaskArea& area = (*fill.nearest.held->areas)[static_cast<std::size_t>(object.id)];
+  PropagationRule rule;
+  rule.depth_margin_m = config_.carry_depth_margin_m;
+  return propagate_mask(view, area, fill.box, held.frame.depth, rule);
+}
+
+// Once may have been an error of the network; but nothing else tells of a frame that it has not
+// seen.
+bool ObjectTracker::is_real(const Track& track, const Held& held) const {
+  return track.sightings >= config_.min_sightings ||
+         (!held.looked_at && track.seen_at + 1 == held.position);
+}
+
+FrameObjects ObjectTracker::leave(const Held& held) const {
+  FrameObjects result = detected_objects(held.frame, held.tracks);
+  for (const Track& track : tracks_) {
+    if (!is_real(track, held) || result.objects.size() == kMostObjects) continue;
+    if (std::ranges::find(held.tracks, track.id) != held.tracks.end()) continue;
+    const std::optional<Fill> fill = fill_of(track, held);
+    if (!fill || is_duplicate(track, *fill, held)) continue;
+    const cv::Size image = held.frame.depth.mat.size();
+    if (pixels_of(fill->box, image).empty()) continue;  // it has left the image
+    const DetectedObject& nearest =
+        fill->nearest.held->frame.detections.objects[fill->nearest.object];
+    const PropagatedMask carried = carried_mask(*fill, held);
+    const std::size_t number = result.objects.size() + 1;
+    TrackedObject object{nearest, track.id, fill->origin, carried.source};
+    object.detection.id = static_cast<int>(number);
+    object.detection.box = fill->box;
+    result.objects.push_back(std::move(object));
+    if (result.mask.mat.empty()) result.mask = ObjectMask(cv::Mat1b(image, std::uint8_t{0}));
+    paint(result.mask, carried.patch, static_cast<std::uint8_t>(number));
+  }
+  return result;
+}
+
+}  // namespace stillmap

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/perception/segmentation/network_segmenter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include <opencv2/core.hpp>
+
+#include "stillmap/core/error.hpp"
+#include "stillmap/perception/segmentation/centernet.hpp"
+#include "stillmap/perception/segmentation/class_map.hpp"
+#include "stillmap/perception/segmentation/matting.hpp"
+#include "stillmap/perception/segmentation/nanodet.hpp"
+#include "stillmap/perception/segmentation/ssd.hpp"
+#include "stillmap/perception/segmentation/yolo.hpp"
+
+namespace stillmap {
+namespace {
+
+constexpr double kMaxOverlap = 0.5;  // of two boxes of a class
+constexpr float kYoloScore = 0.25F;
+constexpr float kSsdScore = 0.4F;
+constexpr float kNanoDetScore = 0.35F;
+constexpr float kCenterNetScore = 0.28F;
+
+// A person that is missed does more harm than one too many; and what is none gets no mask.
+constexpr float kNanoDetPersonScore = 0.2F;
+
+// Of the crop to a person's box, of the box to what of a person can stick out of it, and the share
+// of that which a person's mask covers at least. Chosen on photographs and rendered offices.
+constexpr double kCropScale = 1.0;
+constexpr double kBoxScale = 1.1;
+constexpr double kLeastShare = 0.1;
+
+cv::Size plane_size(const TensorShape& input, bool channels_last) {
+  return {static_cast<int>(input[channels_last ? 2 : 3]),
+          static_cast<int>(input[channels_last ? 1 : 2])};
+}
+
+bool channels_last(const TensorShape& input) {
+  return input[1] != 3;
+}
+
+// How networks of a kind were trained to see.
+InputFormat format_of(ExportKind kind, bool last) {
+  InputFormat format{.channels_last = last};
+  constexpr float kWhole = 1.0F / 255.0F;  // values from 0 to 255
+  switch (kind) {
+    case ExportKind::kClassMap:  // the mean and deviation of ImageNet's pictures
+      format.mean = {0.485F, 0.456F, 0.406F};
+      format.deviation = {0.229F, 0.224F, 0.225F};
+      break;
+    case ExportKind::kSsd:
+    case ExportKind::kCenterNet:
+      format.deviation = {kWhole, kWhole, kWhole};
+      break;
+    case ExportKind::kYoloRows:
+    case ExportKind::kYoloColumns:
+      format.padding = 114;
+      break;
+    case ExportKind::kNanoDet:
+      format.blue_first = true;
+      format.mean = {0.406F, 0.456F, 0.485F};
+      format.deviation = {0.225F, 0.224F, 0.229F};
+      break;
+  }
+  return format;
+}
+
+InputPlacement placement_of(ExportKind kind, cv::Size image, cv::Size input) {
+  const bool keeps_shape = kind == ExportKind::kYoloRows || kind == ExportKind::kYoloColumns ||
+                           kind == ExportKind::kNanoDet;
+  return keeps_shape ? InputPlacement::letterbox(image, input)
+                     : InputPlacement::stretch(image, input);
+}
+
+std::vector<TensorShape> shapes_of(const std::vector<Tensor>& outputs) {
+  std::vector<TensorShape> shapes;
+  for (const Tensor& output : outputs) shapes.push_back(output.shape);
+  return shapes;
+}
+
+// The stride at which a level's cells cover the input.
+int stride_of(std::int64_t cells, cv::Size input) {
+  const double area = static_cast<double>(input.area());
+  return std::max(1, static_cast<int>(std::lround(std::sqrt(area / static_cast<double>(cells)))));
+}
+
+bool map_channels_last(const TensorShape& shape) {
+  return shape.size() >= 3 && shape.back() < shape[shape.size() - 3];
+}
+
+bool is_person(const std::vector<std::string>& names, int label) {
+  const auto index = static_cast<std::size_t>(label);
+  return index < names.size() && names[index] == "person";
+}
+
+PixelBox scaled(const PixelBox& box, double scale) {
+  const double x = box.width() * (scale - 1) / 2, y = box.height() * (scale - 1) / 2;
+  return {box.x0 - x, box.y0 - y, box.x1 + x, box.y1 + y};
+}
+
+Tensor empty_input(const TensorShape& shape) {
+  return {shape, std::vector<float>(static_cast<std::size_t>(element_count(shape)))};
+}
+
+}  // namespace
+
+ImageNetwork::ImageNetwork(std::unique_ptr<Network> network, cv::Size image)
+    : network_(std::move(network)), image_(image) {
+  const TensorShape shape = image_input_shape(network_->signature(), image);
+  export_ = identify_export(network_->signature(), shapes_of(network_->run(empty_input(shape))));
+  const bool last = channels_last(shape);
+  placement_ = placement_of(export_.kind, image, plane_size(shape, last));
+  format_ = format_of(export_.kind, last);
+}
+
+std::vector<FoundObject> ImageNetwork::find(const ColorImage& color) const {
+  STILLMAP_CHECK(color.mat.size() == image_);
+  return decode(network_->run(make_input(color, placement_, format_)));
+}
+
+std::vector<FoundObject> ImageNetwork::decode(const std::vector<Tensor>& outputs) const {
+  switch (export_.kind) {
+    case ExportKind::kClassMap: {
+      const Tensor& map = outputs.at(export_.outputs[0]);
+      return objects_of_class_map(
+          decode_class_map(map.view(), map_channels_last(map.shape), placement_, image_),
+          export_.names,
+          ComponentOptions());
+    }
+    case ExportKind::kYoloRows:
+    case ExportKind::kYoloColumns:
+      return decode_yolo(outputs);
+    case ExportKind::kSsd:
+      return decode_ssd_and_map(outputs);
+    case ExportKind::kNanoDet:
+    case ExportKind::kCenterNet:
+      return decode_boxes(outputs);
+  }
+  return {};
+}
+
+std::vector<FoundObject> ImageNetwork::decode_yolo(const std::vector<Tensor>& outputs) const {
+  const bool rows = export_.kind == ExportKind::kYoloRows;
+  const YoloOutputs yolo{rows ? YoloLayout::kRows : YoloLayout::kColumns,
+                         outputs.at(export_.outputs[0]).view(),
+                         outputs.at(export_.outputs[1]).view()};
+  const std::vector<Candidate> candidates =
+      suppress_overlaps(decode_yolo_boxes(yolo, kYoloScore), kMaxOverlap);
+  return yolo_objects(yolo, candidates, export_.names, placement_, image_);
+}
+
+std::vector<FoundObject> ImageNetwork::decode_ssd_and_map(
+    const std::vector<Tensor>& outputs) const {
+  const SsdOutputs ssd{outputs.at(export_.outputs[0]).view(),
+                       outputs.at(export_.outputs[1]).view(),
+                       outputs.at(export_.outputs[2]).view()};
+  const Tensor& map = outputs.at(export_.outputs[3]);
+  const std::vector<Candidate> candidates =
+      suppress_overlaps(decode_ssd(ssd, placement_.input, kSsdScore), kMaxOverlap);
+  const std::vector<std::string> without_background(export_.names.begin() + 1, export_.names.end());
+  return with_class_pixels(
+      name_candidates(to_image(candidates, placement_), without_background),
+      decode_class_map(map.view(), map_channels_last(map.shape), placement_, image_),
+      export_.names);
+}
+
+std::vector<FoundObject> ImageNetwork::decode_boxes(const std::vector<Tensor>& outputs) const {
+  std::vector<Candidate> candidates;
+  if (export_.kind == ExportKind::kNanoDet) {
+    std::vector<NanoDetLevel> levels;
+    for (std::size_t i = 0; i + 1 < export_.outputs.size(); i += 2) {
+      const Tensor& scores = outputs.at(export_.outputs[i]);
+      levels.push_back({stride_of(scores.shape.at(1), placement_.input),
+                        scores.view(),
+                        outputs.at(export_.outputs[i + 1]).view()});
+    }
+    candidates = decode_nanodet(levels, placement_.input, kNanoDetPersonScore);
+    std::erase_if(candidates, [&](const Candidate& candidate) {
+      return candidate.score < kNanoDetScore && !is_person(export_.names, candidate.label);
+    });
+  } else {
+    candidates = decode_centernet(outputs.at(export_.outputs[0]).view(),
+                                  outputs.at(export_.outputs[1]).view(),
+                                  placement_.input,
+                                  kCenterNetScore);
+  }
+  candidates = suppress_overlaps(std::move(candidates), kMaxOverlap);
+  return name_candidates(to_image(std::move(candidates), placement_), export_.names);
+}
+
+NetworkSegmenter::NetworkSegmenter(std::unique_ptr<Network> network, cv::Size image)
+    : image_(image), network_(std::move(network), image) {}
+
+FrameDetections NetworkSegmenter::segment(const ColorImage& color, const Stamp& stamp) const {
+  return assemble_detections(stamp, image_, network_.find(color));
+}
+
+PersonSegmenter::PersonSegmenter(std::unique_ptr<Network> detector,
+                                 std::unique_ptr<Network> matting,
+                                 float threshold,
+                                 cv::Size image)
+    : image_(image),
+      detector_(std::move(detector), image),
+      matting_(std::move(matting)),
+      crop_shape_(image_input_shape(matting_->signature(), image)),
+      threshold_(threshold) {}
+
+FrameDetections PersonSegmenter::segment(const ColorImage& color, const Stamp& stamp) const {
+  std::vector<FoundObject> objects;
+  for (FoundObject& object : detector_.find(color)) {
+    if (object.class_name != "person") {
+      objects.push_back(std::move(object));
+    } else if (std::optional<FoundObject> person = with_mask(std::move(object), color)) {
+      objects.push_back(*std::move(person));
+    }
+  }
+  return assemble_detections(stamp, image_, std::move(objects));
+}
+
+std::optional<FoundObject> PersonSegmenter::with_mask(FoundObject person,
+                                                      const ColorImage& color) const {
+  const std::optional<PixelBox> box = clip_box(person.box, image_);
+  if (!box) return std::nullopt;
+  const bool last = channels_last(crop_shape_);
+  const InputPlacement placement =
+      InputPlacement::crop(crop_square(*box, kCropScale), plane_size(crop_shape_, last));
+  const std::vector<Tensor> outputs =
+      matting_->run(make_input(color, placement, {.channels_last = last}));
+  if (outputs.empty()) throw Error("a person's mask: the network has no output");
+  person.box = scaled(*box, kBoxScale);
+  person = with_matting(std::move(person), outputs[0].view(), threshold_, placement, image_);
+  if (cv::countNonZero(person.mask) < kLeastShare * person.region.area()) return std::nullopt;
+  person.box = *box;
+  return person;
+}
+
+}  // namespace stillmap

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+// The segmenters around networks that are functions.
+#include "stillmap/perception/segmentation/network_segmenter.hpp"
+
+#include <functional>
+#include <utility>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <opencv2/core.hpp>
+
+#include "tests/support/image_files.hpp"
+
+namespace stillmap {
+namespace {
+
+using Run = std::function<std::vector<Tensor>(const Tensor&)>;
+
+class FunctionNetwork : public Network {
+ public:
+  FunctionNetwork(TensorShape input, Run run) : run_(std::move(run)) {
+    signature_.inputs = {{"image", std::move(input)}};
+  }
+  [[nodiscard]] const NetworkSignature& signature() const override { return signature_; }
+  [[nodiscard]] std::vector<Tensor> run(const Tensor& input) const override { return run_(input); }
+
+ private:
+  NetworkSignature signature_;
+  Run run_;
+};
+
+Tensor zeros(const TensorShape& shape) {
+  return {shape, std::vector<float>(static_cast<std::size_t>(element_count(shape)))};
+}
+
+const cv::Size kImage(64, 48);
+const Stamp kStamp{2.5, "2.5"};
+
+// White where a person stands, black elsewhere.
+ColorImage person_at(cv::Rect place) {
+  cv::Mat3b image = cv::Mat3b::zeros(kImage);
+  image(place).setTo(cv::Scalar(255, 255, 255));
+  return ColorImage(image);
+}
+
+// Finds a white pixel where its input, normalised as it may be, is positive.
+Tensor person_where_positive(const Tensor& input) {
+  const std::size_t area = input.values.size() / 3;
+  Tensor logits = zeros({1, 21, input.shape[2], input.shape[3]});
+  for (std::size_t i = 0; i < area; ++i) {
+    logits.values[(input.values[i] > 0 ? 15 : 0) * area + i] = 5;
+  }
+  return logits;
+}
+
+TEST(NetworkSegmenter, ClassMapBecomesObjects) {
+  const NetworkSegmenter segmenter(
+      std::make_unique<FunctionNetwork>(
+          TensorShape{1, 3, 96, 128},
+          [](const Tensor& input) { return std::vector{person_where_positive(input)}; }),
+      kImage);
+  const cv::Rect place(10, 8, 24, 30);
+  const FrameDetections found = segmenter.segment(person_at(place), kStamp);
+  EXPECT_EQ(found.stamp.text, "2.5");
+  ASSERT_EQ(found.objects.size(), 1U);
+  EXPECT_EQ(found.objects[0].class_name, "person");
+  EXPECT_EQ(found.objects[0].box, (PixelBox{10, 8, 34, 38}));
+  cv::Mat1b expected = cv::Mat1b::zeros(kImage);
+  expected(place).setTo(1);
+  EXPECT_EQ(cv::countNonZero(found.mask.mat != expected), 0);
+}
+
+// NanoDet with one cell of 64 pixels: at its middle a person or, with label 1, another thing, whose
+// box reaches half a stride to each side.
+Run nanodet(float person, float other) {
+  return [=](const Tensor&) {
+    Tensor scores = zeros({1, 1, 80}), fine_scores = zeros({1, 4, 80});
+    scores.values[0] = person;
+    scores.values[1] = other;
+    Tensor boxes = zeros({1, 1, 8}), fine_boxes = zeros({1, 4, 8});
+    return std::vector{fine_scores, fine_boxes, scores, boxes};
+  };
+}
+
+// A matting network that sees a person where its crop is white.
+std::vector<Tensor> matting(const Tensor& input) {
+  Tensor output = zeros({1, 32, 32, 1});
+  for (std::size_t i = 0; i < output.values.size(); ++i) output.values[i] = input.values[i * 3];
+  return {output};
+}
+
+PersonSegmenter person_segmenter(float person, float other) {
+  return PersonSegmenter(
+      std::make_unique<FunctionNetwork>(TensorShape{1, 3, 64, 64}, nanodet(person, other)),
+      std::make_unique<FunctionNetwork>(TensorShape{1, 32, 32, 3}, matting),
+      0.5F,
+      kImage);
+}
+
+// The image fills the 64x64 input but for 8 rows above and below: the box is the whole image.
+TEST(PersonSegmenter, MaskIsOfTheMattingNetwork) {
+  const cv::Rect place(16, 16, 32, 16);
+  const FrameDetections found = person_segmenter(0.9F, 0).segment(person_at(place), kStamp);
+  ASSERT_EQ(found.objects.size(), 1U);
+  EXPECT_EQ(found.objects[0].class_name, "person");
+  EXPECT_EQ(found.objects[0].box, (PixelBox{0, 0, 64, 48}));
+  cv::Mat1b expected = cv::Mat1b::zeros(kImage);
+  expected(place).setTo(1);
+  // The crop has two pixels of the image in one: its outline is met to a pixel.
+  EXPECT_LT(cv::countNonZero(found.mask.mat != expected), 2 * (32 + 16) + 4);
+  EXPECT_GT(cv::countNonZero(found.mask.mat), 30 * 14);
+}
+
+TEST(PersonSegmenter, OtherThingsAreBoxes) {
+  const FrameDetections found =
+      person_segmenter(0, 0.9F).segment(person_at({16, 16, 32, 16}), kStamp);
+  ASSERT_EQ(found.objects.size(), 1U);
+  EXPECT_EQ(found.objects[0].class_name, "bicycle");
+  EXPECT_TRUE(found.mask.mat.empty());
+}
+
+TEST(PersonSegmenter, APersonWithoutPixelsIsNone) {
+  EXPECT_THAT(person_segmenter(0.9F, 0).segment(person_at({0, 0, 2, 2}), kStamp).objects,
+              testing::IsEmpty());
+}
+
+TEST(PersonSegmenter, WeakPeopleCountOtherThingsDoNot) {
+  EXPECT_THAT(person_segmenter(0.25F, 0.25F).segment(person_at({16, 16, 32, 16}), kStamp).objects,
+              testing::ElementsAre(testing::Field(&DetectedObject::class_name, "person")));
+}
+
+}  // namespace
+}  // namespace stillmap

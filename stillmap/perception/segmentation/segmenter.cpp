@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/perception/segmentation/segmenter.hpp"
+
+#include <filesystem>
+#include <string>
+#include <utility>
+
+#include "stillmap/core/error.hpp"
+#include "stillmap/io/atomic_file.hpp"
+#include "stillmap/perception/detections/detections_io.hpp"
+#include "stillmap/perception/segmentation/model_folder.hpp"
+#include "stillmap/perception/segmentation/network_segmenter.hpp"
+#include "stillmap/perception/segmentation/onnx_runtime.hpp"
+
+namespace stillmap {
+namespace {
+
+namespace fs = std::filesystem;
+
+// What was found before.
+class FolderSegmenter : public Segmenter {
+ public:
+  FolderSegmenter(const fs::path& folder, cv::Size image)
+      : folder_(DetectionsFolder::open(folder, image)) {}
+
+  [[nodiscard]] FrameDetections segment(const ColorImage&, const Stamp& stamp) const override {
+    return folder_.at(stamp);
+  }
+
+ private:
+  DetectionsFolder folder_;
+};
+
+std::unique_ptr<Network> open_fetched(const fs::path& name, const SegmenterOptions& options) {
+  const fs::path file = model_folder() / name;
+  if (!path_exists(file)) {
+    throw Error("--segmenter auto: there is no {}; run tools/fetch_models, which gets it",
+                file.string());
+  }
+  return open_onnx_network(file, {options.threads});
+}
+
+std::unique_ptr<Segmenter> make_person_segmenter(cv::Size image, const SegmenterOptions& options) {
+  constexpr float kPerson = 0.3F;
+  std::unique_ptr<Network> detector = open_fetched("nanodet.onnx", options);
+  std::unique_ptr<Network> matting = open_fetched("selfie.onnx", options);
+  return std::make_unique<PersonSegmenter>(std::move(detector), std::move(matting), kPerson, image);
+}
+
+std::unique_ptr<Segmenter> make_network_segmenter(const fs::path& file,
+                                                  cv::Size image,
+                                                  const SegmenterOptions& options) {
+  std::unique_ptr<Network> network = open_onnx_network(file, {options.threads});
+  try {
+    return std::make_unique<NetworkSegmenter>(std::move(network), image);
+  } catch (const Error& error) {
+    const std::string text = error.what();
+    throw Error(text.starts_with(file.string()) ? text : file.string() + ": " + text);
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<Segmenter> make_segmenter(std::string_view description,
+                                          cv::Size image,
+                                          const SegmenterOptions& options) {
+  constexpr std::string_view kFolder = "detections:", kNetwork = "onnx:";
+  if (description == "auto" || description == "onnx:auto") {
+    return make_person_segmenter(image, options);
+  }
+  if (description.starts_with(kFolder) && description.size() > kFolder.size()) {
+    return std::make_unique<FolderSegmenter>(description.substr(kFolder.size()), image);
+  }
+  if (description.starts_with(kNetwork) && description.size() > kNetwork.size()) {
+    return make_network_segmenter(description.substr(kNetwork.size()), image, options);
+  }
+  throw Error("--segmenter {}: expected detections:DIR, onnx:MODEL.onnx or auto", description);
+}
+
+}  // namespace stillmap

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "stillmap/sensor/tum_sequence.hpp"
+
+namespace stillmap {
+
+/// The pairs of a sequence's folder, in the order of their stamps; see TumSequence, of which this
+/// is the part that reads lists.
+[[nodiscard]] std::vector<SequenceEntry> read_sequence_entries(const std::filesystem::path& folder);
+
+}  // namespace stillmap

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "stillmap/core/ids.hpp"
+#include "stillmap/core/rgbd_frame.hpp"
+#include "stillmap/geometry/camera.hpp"
+
+namespace stillmap {
+
+struct SequenceOptions {
+  std::optional<CameraModel> camera;  ///< instead of the one that the sequence says or suggests
+};
+
+/// A colour image and the depth image that goes with it.
+struct SequenceEntry {
+  Stamp stamp;  ///< of the colour image, with the text of rgb.txt
+  double depth_stamp_s = 0.0;
+  std::filesystem::path color_file;
+  std::filesystem::path depth_file;
+};
+
+/// An RGB-D sequence on disk in the layout of the TUM RGB-D benchmark.
+///
+/// Pairs come from associations.txt where there is one, else from the stamps in rgb.txt and
+/// depth.txt: less than 0.02 s apart, the closest first, each image once.
+class TumSequence {
+ public:
+  /// Reads the lists, no image. The camera is that of the options, else the folder's camera.yaml,
+  /// else the one that the folder's name tells (freiburg1, fr1, freiburg2, fr2, freiburg3, fr3,
+  /// bonn as words of it), else that in truth/objects.json. Throws Error, with file and line, for
+  /// a missing folder or list, an empty list, stamps that do not increase, a file outside the
+  /// folder, no pair at all, no known camera.
+  [[nodiscard]] static TumSequence open(const std::filesystem::path& folder,
+                                        const SequenceOptions& options = {});
+
+  /// The folder's name.
+  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+  [[nodiscard]] const CameraModel& camera() const { return camera_; }
+
+  /// The number of pairs, at least one; ids of frames count from 0.
+  [[nodiscard]] std::size_t size() const { return entries_.size(); }
+  [[nodiscard]] const SequenceEntry& entry(FrameId id) const;
+
+  /// Decodes the images of a pair. May run in any number of threads. Throws Error, naming the file,
+  /// when one is missing, broken, of the wrong kind or not of the camera's size.
+  [[nodiscard]] FramePtr read(FrameId id) const;
+
+  /// groundtruth.txt, where the folder has it.
+  [[nodiscard]] std::optional<std::filesystem::path> groundtruth_file() const;
+
+ private:
+  TumSequence() = default;
+
+  std::filesystem::path folder_;
+  std::string name_;
+  CameraModel camera_;
+  std::vector<SequenceEntry> entries_;
+};
+
+}  // namespace stillmap

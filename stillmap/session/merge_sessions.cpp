@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/session/merge_sessions.hpp"
+
+#include <tuple>
+
+#include "stillmap/core/error.hpp"
+#include "stillmap/session/append.hpp"
+#include "stillmap/session/session_cloud.hpp"
+#include "stillmap/slam/loop/global_adjustment.hpp"
+#include "stillmap/slam/loop/loop_closer.hpp"
+#include "stillmap/slam/loop/loop_detector.hpp"
+
+namespace stillmap {
+namespace {
+
+bool same_lens(const CameraModel& a, const CameraModel& b) {
+  const auto intrinsics = [](const CameraModel& c) {
+    return std::tuple(
+        c.width_px, c.height_px, c.fx, c.fy, c.cx, c.cy, c.k1, c.k2, c.p1, c.p2, c.k3);
+  };
+  return intrinsics(a) == intrinsics(b);
+}
+
+// Closes what loops the key frames from `begin` on make with those of `places`.
+std::size_t close_loops(Session& session,
+                        const PlaceIndex& places,
+                        KeyframeId begin,
+                        const SystemConfig& config) {
+  const MeasurementModel measure = loop_measurement_model(config, session.map.level_scales());
+  LoopDetector detector(config.loop, session.camera, measure, config.seed);
+  std::vector<KeyframeId> newer;
+  for (const auto& [id, keyframe] : session.map.keyframes()) {
+    if (id >= begin) newer.push_back(id);
+  }
+  std::size_t closed = 0;
+  for (const KeyframeId id : newer) {
+    const std::optional<FoundLoop> found = detector.advance(session.map, places, id);
+    if (!found) continue;
+    if (!close_loop(session.map, session.loops, *found, session.camera, measure, config.loop)) {
+      continue;
+    }
+    detector.clear();
+    ++closed;
+  }
+  return closed;
+}
+
+}  // namespace
+
+void check_fits(const Session& session,
+                const CameraModel& camera,
+                const std::vector<float>& level_scales,
+                const std::string& place) {
+  const CameraModel& its = session.camera;
+  if (!same_lens(its, camera)) {
+    throw Error(
+        "{} is of camera '{}' ({} x {} px, fx {:.2f}), not of '{}' ({} x {} px, fx {:.2f}): "
+        "expected the same camera",
+        place,
+        its.name,
+        its.width_px,
+        its.height_px,
+        its.fx,
+        camera.name,
+        camera.width_px,
+        camera.height_px,
+        camera.fx);
+  }
+  if (session.map.level_scales() != level_scales) {
+    throw Error(
+        "{} has {} pyramid levels, of other sizes than the {} here: expected the same "
+        "tracking.levels and tracking.scale_factor",
+        place,
+        session.map.level_scales().size(),
+        level_scales.size());
+  }
+}
+
+std::optional<MergedSessions> merge_sessions(const Session& first,
+                                             const Session& second,
+                                             const std::string& second_name) {
+  check_fits(second, first.camera, first.map.level_scales(), second_name);
+  const SystemConfig config = settings_of(first, "the first session");
+  MergedSessions merged{appended(first, second), 0};
+  Map& map = merged.session.map;
+  const KeyframeId begin = first.map.parts().next_keyframe;
+  merged.loops = close_loops(merged.session, index_of(first.map), begin, config);
+  if (merged.loops == 0) return std::nullopt;
+  const SubmapId submap = map.keyframe(merged.session.loops.back().a).submap;
+  apply_correction(map,
+                   adjust_globally(submap_window(map, submap),
+                                   first.camera,
+                                   loop_measurement_model(config, map.level_scales()),
+                                   config.loop.bundle));
+  return merged;
+}
+
+}  // namespace stillmap

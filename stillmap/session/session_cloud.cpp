@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/session/session_cloud.hpp"
+
+#include <vector>
+
+#include "stillmap/config/config_io.hpp"
+#include "stillmap/core/error.hpp"
+#include "stillmap/dense/static_map.hpp"
+#include "stillmap/session/session_map.hpp"
+
+namespace stillmap {
+
+SystemConfig settings_of(const Session& session, const std::string& place) {
+  SystemConfig config;
+  load_yaml_text(list_fields(config), session.config_yaml, place + ": settings");
+  return config;
+}
+
+PointCloud session_cloud(const Session& session, SubmapId submap, const std::string& place) {
+  const SystemConfig settings = settings_of(session, place);
+  const CloudConfig config = settings.cloud.resolved_for(settings.dynamics.mode);
+  std::vector<PosedView> views;
+  for (const ViewRecord& record : session.views) {
+    const FrameRecord& frame = session.frames[record.frame];
+    if (submap_of(session, frame) != submap) continue;
+    if (config.free_space == "on" && record.view->range.cells.empty()) {
+      throw Error(
+          "{}: invalid view of frame {}: it knows no free space, which cloud.free_space "
+          "asks for",
+          place,
+          record.frame);
+    }
+    views.push_back({T_world_frame(session, frame), record.view.get()});
+  }
+  return static_map(views, session.camera, config);
+}
+
+}  // namespace stillmap

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "stillmap/core/fields.hpp"
+#include "stillmap/dense/static_map.hpp"
+#include "stillmap/perception/motion/dynamics_stage.hpp"
+#include "stillmap/slam/features/orb_extractor.hpp"
+#include "stillmap/slam/loop/loop_config.hpp"
+#include "stillmap/slam/mapping/local_mapper.hpp"
+#include "stillmap/slam/optim/measurement_model.hpp"
+#include "stillmap/slam/tracking/keyframe_policy.hpp"
+#include "stillmap/slam/tracking/relocalizer.hpp"
+#include "stillmap/slam/tracking/tracker.hpp"
+
+namespace stillmap {
+
+/// Features and tracking, which share the group `tracking`.
+struct TrackingConfig {
+  OrbConfig orb;
+  TrackerConfig tracker;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    OrbConfig::fields(self.orb, visit);
+    TrackerConfig::fields(self.tracker, visit);
+  }
+};
+
+/// Runs with a camera.
+struct LiveConfig {
+  int look_gap_frames = 3;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit(
+        "look_gap_frames",
+        self.look_gap_frames,
+        FieldInfo{
+            "--live: the network looks at no more than one in so many frames", "frames", 1, 1000});
+  }
+};
+
+/// All settings of a run. The defaults need no file.
+struct SystemConfig {
+  std::uint32_t seed = 0;
+  TrackingConfig tracking;
+  MeasurementConfig measurement;
+  DynamicsConfig dynamics;
+  KeyframePolicyConfig keyframe;
+  RelocalizerConfig relocalization;
+  MappingConfig mapping;
+  LoopConfig loop;
+  CloudConfig cloud;
+  LiveConfig live;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("seed", self.seed, FieldInfo{"of every random choice"});
+    visit.group("tracking", self.tracking);
+    visit.group("measurement", self.measurement);
+    visit.group("dynamics", self.dynamics);
+    visit.group("keyframe", self.keyframe);
+    visit.group("relocalization", self.relocalization);
+    visit.group("mapping", self.mapping);
+    visit.group("loop", self.loop);
+    visit.group("cloud", self.cloud);
+    visit.group("live", self.live);
+  }
+
+  /// Rules that concern several values. Throws Error naming the keys.
+  void check() const;
+};
+
+/// What features measure where loops are judged and the submap is adjusted to them. Over a whole
+/// loop depth has to count for what it is: pixels alone hardly tell a step aside from a turn.
+/// Tracking trusts it less, since the sensor's errors are alike from frame to frame.
+[[nodiscard]] MeasurementModel loop_measurement_model(const SystemConfig& config,
+                                                      std::vector<float> level_scales);
+
+}  // namespace stillmap

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "stillmap/geometry/camera.hpp"
+#include "stillmap/slam/features/features.hpp"
+
+namespace stillmap {
+
+/// The features with `keep[i]` not 0, in their order. `keep` has a value per feature.
+[[nodiscard]] Features select_features(const Features& features,
+                                       std::span<const std::uint8_t> keep,
+                                       const CameraModel& camera);
+
+}  // namespace stillmap

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "stillmap/slam/features/descriptor.hpp"
+#include "stillmap/slam/features/feature_grid.hpp"
+
+namespace stillmap {
+
+/// The point features of one frame, as parallel arrays of equal length. Never changed once made.
+struct Features {
+  std::vector<Eigen::Vector2f> raw_px;    ///< where the image has them
+  std::vector<Eigen::Vector2f> ideal_px;  ///< without lens distortion
+  std::vector<float> sensor_depth_m;      ///< along the optical axis; 0 where unknown
+  // The same, moved to the instant that the frame's pose refers to: all geometry uses these.
+  std::vector<Eigen::Vector2f> px;
+  std::vector<float> depth_m;
+  std::vector<std::uint8_t> level;  ///< of the image pyramid; 0 is the full resolution
+  std::vector<float> angle_deg;     ///< orientation, [0, 360)
+  std::vector<Descriptor> descriptors;
+  FeatureGrid grid;  ///< over px
+
+  [[nodiscard]] std::size_t size() const { return px.size(); }
+};
+
+using FeaturesPtr = std::shared_ptr<const Features>;
+
+}  // namespace stillmap

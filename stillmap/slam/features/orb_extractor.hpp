@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include <opencv2/core/types.hpp>
+
+#include "stillmap/core/fields.hpp"
+#include "stillmap/core/images.hpp"
+#include "stillmap/geometry/camera.hpp"
+#include "stillmap/slam/features/features.hpp"
+
+namespace stillmap {
+
+struct OrbConfig {
+  int features = 1000;
+  int levels = 8;
+  double scale_factor = 1.2;
+  int corner_threshold = 20;
+  int weak_corner_threshold = 7;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("features", self.features, FieldInfo{"features sought in a frame", "", 50, 20000});
+    visit("levels", self.levels, FieldInfo{"levels of the image pyramid", "", 1, 16});
+    visit("scale_factor",
+          self.scale_factor,
+          FieldInfo{"ratio of one level's size to the next", "", 1.05, 2});
+    visit("corner_threshold",
+          self.corner_threshold,
+          FieldInfo{"brightness step of a corner", "grey levels", 2, 200});
+    visit("weak_corner_threshold",
+          self.weak_corner_threshold,
+          FieldInfo{"the same where a cell has no corner", "grey levels", 1, 200});
+  }
+};
+
+/// What features need of an image whatever is excluded from it: its pyramid, and all corners.
+struct ImageCorners {
+  struct Level {
+    cv::Mat1b image;
+    cv::Mat1b blurred;
+    std::vector<cv::KeyPoint> corners;
+  };
+  std::vector<Level> levels;  ///< the finest first
+};
+
+/// Oriented FAST corners with rotated BRIEF descriptors (Rublee et al., "ORB", ICCV 2011) over an
+/// image pyramid, spread evenly over the image on each level.
+///
+/// Remembers nothing of images: one extractor serves any number of threads.
+class OrbExtractor {
+ public:
+  OrbExtractor(const OrbConfig& config, const CameraModel& camera);
+
+  /// The corners of an image of the camera's size: the part of the work that can be done before it
+  /// is known what is excluded. Its finest level is the image itself, not a copy.
+  [[nodiscard]] ImageCorners corners(const GrayImage& gray) const;
+
+  /// Features at some of the corners, at ideal and raw pixels, each with the depth that `depth`,
+  /// of the camera's size, has there. None where `excluded`, which may be empty, is not 0: then the
+  /// rest of the image gets all of them.
+  [[nodiscard]] Features extract(ImageCorners corners,
+                                 const DepthImage& depth,
+                                 const cv::Mat1b& excluded = {}) const;
+
+  /// Both at once.
+  [[nodiscard]] Features extract(const GrayImage& gray,
+                                 const DepthImage& depth,
+                                 const cv::Mat1b& excluded = {}) const {
+    return extract(corners(gray), depth, excluded);
+  }
+
+  /// Size of a pixel of each level in pixels of the full image.
+  [[nodiscard]] const std::vector<float>& level_scales() const { return scales_; }
+
+ private:
+  struct Level {
+    cv::Size size;
+    int feature_count = 0;
+  };
+
+  [[nodiscard]] std::vector<cv::KeyPoint> detect(const cv::Mat1b& image) const;
+  void append(std::size_t number,
+              const ImageCorners::Level& level,
+              const std::vector<cv::KeyPoint>& corners,
+              Features& features) const;
+  void place_in_space(const DepthImage& depth, Features& features) const;
+
+  OrbConfig config_;
+  CameraModel camera_;
+  std::vector<float> scales_;
+  std::vector<Level> levels_;
+};
+
+/// Scales of a pyramid: 1, f, f^2, ...
+[[nodiscard]] std::vector<float> pyramid_scales(const OrbConfig& config);
+
+}  // namespace stillmap

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "stillmap/core/ids.hpp"
+#include "stillmap/core/trajectory.hpp"
+#include "stillmap/slam/features/features.hpp"
+
+namespace stillmap {
+
+/// A frame that the map keeps: its pose, its features and which landmarks they see. No images.
+struct Keyframe {
+  KeyframeId id;
+  FrameId frame;
+  Stamp stamp;
+  SubmapId submap{0};
+  bool is_origin = false;  ///< the first of its submap, which adjustment holds where it is
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  FeaturesPtr features;
+  std::vector<LandmarkId> landmarks;  ///< per feature; invalid where it sees none
+};
+
+/// The features that see a landmark, in order.
+[[nodiscard]] inline std::vector<std::uint32_t> features_with_landmark(const Keyframe& keyframe) {
+  std::vector<std::uint32_t> features;
+  for (std::uint32_t i = 0; i < keyframe.landmarks.size(); ++i) {
+    if (keyframe.landmarks[i].valid()) features.push_back(i);
+  }
+  return features;
+}
+
+}  // namespace stillmap

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "stillmap/core/fields.hpp"
+#include "stillmap/geometry/camera.hpp"
+#include "stillmap/slam/map/map.hpp"
+#include "stillmap/slam/map/place_index.hpp"
+#include "stillmap/slam/optim/measurement_model.hpp"
+#include "stillmap/slam/optim/pose_optimizer.hpp"
+
+namespace stillmap {
+
+struct RelocalizerConfig {
+  int candidates = 5;
+  int iterations = 300;
+  int min_matches = 15;
+  double search_radius_px = 15;
+  int local_keyframes = 10;
+  int min_inliers = 50;
+  double min_share = 0.5;
+  int new_world_after_frames = 60;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("candidates",
+          self.candidates,
+          FieldInfo{"key frames tried in a frame while lost", "", 1, 1000});
+    visit("iterations", self.iterations, FieldInfo{"of RANSAC, per key frame", "", 1, 100000});
+    visit("min_matches",
+          self.min_matches,
+          FieldInfo{"by appearance that have one pose in common", "", 4, 1000});
+    visit("search_radius_px",
+          self.search_radius_px,
+          FieldInfo{"search for more landmarks from there, on the finest level", "px", 1, 100});
+    visit("local_keyframes",
+          self.local_keyframes,
+          FieldInfo{"key frames whose landmarks are searched then", "", 1, 1000});
+    visit("min_inliers", self.min_inliers, FieldInfo{"that prove a place", "", 4, 1000});
+    visit("min_share",
+          self.min_share,
+          FieldInfo{"of the landmarks that tracking would find there, found", "", 0, 2});
+    visit("new_world_after_frames",
+          self.new_world_after_frames,
+          FieldInfo{"lost for so long, the camera begins a new map, which joins the others when a "
+                    "place is recognised",
+                    "frames",
+                    1,
+                    1000000000});
+  }
+};
+
+/// A place that was found again.
+struct Relocalization {
+  Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();
+  std::vector<std::pair<std::uint32_t, LandmarkId>> matches;  ///< (feature, landmark), inliers
+  /// Landmarks of the key frame that are found, to those that tracking would find there, as often
+  /// as it found each of them when it should have seen it. About 1 at a known place.
+  double share = 0;
+};
+
+/// Finds a frame's pose without knowing where the camera is.
+///
+/// Each key frame that looks like the frame is matched by appearance; the pose of three matches
+/// with depth that most matches agree with (RANSAC; those without depth count too) is refined, more
+/// landmarks are looked for where it says, and it is refined with them. Many of the landmarks that
+/// should be seen have to be: a place that only has some things in common with a known one is not
+/// it.
+class Relocalizer {
+ public:
+  Relocalizer(const RelocalizerConfig& config,
+              const CameraModel& camera,
+              MeasurementModel measure,
+              std::uint32_t seed);
+
+  /// Of the key frames that look most like the frame, the place with most landmarks found. Nothing
+  /// when none fits. `places` holds key frames of the map.
+  [[nodiscard]] std::optional<Relocalization> find(FrameId frame,
+                                                   const Features& features,
+                                                   const Map& map,
+                                                   const PlaceIndex& places) const;
+
+ private:
+  struct Match {
+    std::uint32_t feature;
+    LandmarkId landmark;
+    PoseObservation observation;
+  };
+  using Matches = std::vector<Match>;
+  struct Pose {
+    Eigen::Isometry3d T_camera_world;
+    Matches inliers;
+  };
+
+  [[nodiscard]] std::optional<Relocalization> verify(FrameId frame,
+                                                     const Features& features,
+                                                     const Map& map,
+                                                     const Keyframe& keyframe) const;
+  [[nodiscard]] Match make_match(const Features& features,
+                                 std::uint32_t feature,
+                                 LandmarkId landmark,
+                                 const Map& map) const;
+  [[nodiscard]] Matches match(const Features& features,
+                              const Keyframe& keyframe,
+                              const Map& map) const;
+  [[nodiscard]] Matches agreeing(const Matches& matches,
+                                 const Eigen::Isometry3d& T_camera_world) const;
+  [[nodiscard]] std::optional<Eigen::Isometry3d> sample_pose(FrameId frame,
+                                                             const Features& features,
+                                                             const Keyframe& keyframe,
+                                                             const Matches& matches) const;
+  [[nodiscard]] std::vector<LandmarkId> local_landmarks(const Keyframe& keyframe,
+                                                        const Map& map) const;
+  [[nodiscard]] Matches search(const Features& features,
+                               const Map& map,
+                               std::span<const LandmarkId> landmarks,
+                               const Eigen::Isometry3d& T_camera_world,
+                               double radius_px) const;
+  [[nodiscard]] Pose optimize(const Eigen::Isometry3d& initial, const Matches& matches) const;
+  [[nodiscard]] double share_found(const Features& features,
+                                   const Map& map,
+                                   const Keyframe& keyframe,
+                                   const Pose& pose) const;
+
+  RelocalizerConfig config_;
+  CameraModel camera_;
+  MeasurementModel measure_;
+  std::uint32_t seed_;
+};
+
+}  // namespace stillmap

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "stillmap/core/ids.hpp"
+#include "stillmap/slam/features/features.hpp"
+
+namespace stillmap {
+
+enum class TrackingStatus {
+  kInitialized,  ///< the first frame of a map: its camera is the world's origin
+  kTracked,
+  kRelocalized,  ///< found again after having been lost
+  kLost,         ///< no pose; the frame is marked, nothing is invented
+};
+
+/// What tracking says of one frame.
+struct TrackedFrame {
+  FrameId id;
+  double stamp_s = 0;
+  TrackingStatus status = TrackingStatus::kLost;
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< unless lost
+  KeyframeId reference;  ///< the key frame that shares most landmarks with it
+  FeaturesPtr features;
+  std::vector<LandmarkId> landmarks;  ///< per feature: inliers of the pose; invalid for others
+  int inliers = 0;
+  std::vector<LandmarkId> expected;  ///< landmarks that should have been seen
+};
+
+[[nodiscard]] inline bool has_pose(const TrackedFrame& frame) {
+  return frame.status != TrackingStatus::kLost;
+}
+
+}  // namespace stillmap

@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/slam/tracking/tracker.hpp"
+
+#include <algorithm>
+#include <unordered_set>
+
+#include "stillmap/slam/features/matcher.hpp"
+#include "stillmap/slam/map/covisibility.hpp"
+#include "stillmap/slam/map/landmark_projection.hpp"
+
+namespace stillmap {
+namespace {
+
+constexpr int kMinFrameMatches = 20;
+constexpr std::size_t kMinFrameInliers = 10;
+
+}  // namespace
+
+Tracker::Tracker(const TrackerConfig& config,
+                 const RelocalizerConfig& relocalizer,
+                 const CameraModel& camera,
+                 MeasurementModel measure,
+                 std::uint32_t seed)
+    : config_(config),
+      relocalizer_(relocalizer, camera, measure, seed),
+      camera_(camera),
+      measure_(std::move(measure)),
+      readout_(config.shutter, camera) {}
+
+TrackedFrame Tracker::start(const RgbdFrame& frame, FeaturesPtr features) {
+  TrackedFrame tracked;
+  tracked.id = frame.id;
+  tracked.stamp_s = frame.stamp.seconds;
+  tracked.status = TrackingStatus::kInitialized;
+  tracked.landmarks.assign(features->size(), LandmarkId{});
+  tracked.features = std::move(features);
+  last_ = tracked;
+  motion_.reset();
+  lost_ = false;
+  return tracked;
+}
+
+TrackedFrame Tracker::track(const RgbdFrame& frame,
+                            Features features,
+                            const Map& map,
+                            const PlaceIndex& places) {
+  TrackedFrame tracked;
+  tracked.id = frame.id;
+  tracked.stamp_s = frame.stamp.seconds;
+  tracked.landmarks.assign(features.size(), LandmarkId{});
+  if (last_) {
+    tracked.reference = last_->reference;
+    const double since_last_s = tracked.stamp_s - last_->stamp_s;
+    const CameraVelocity expected = mean_velocity(motion_.predict(since_last_s), since_last_s);
+    features = undo_rolling_shutter(std::move(features), camera_, readout_s(), expected);
+  }
+  std::optional<PoseFromMatches> pose = find_pose(tracked, features, map, places);
+  if (pose) {
+    pose = track_local_map(tracked, features, *pose, map);
+    if (!lost_) pose = refine_shutter(tracked, features, *pose, map);
+    tracked.inliers = static_cast<int>(pose->inliers.size());
+  }
+  tracked.features = std::make_shared<const Features>(std::move(features));
+  if (tracked.inliers < config_.min_inliers) {
+    lost_ = true;
+    motion_.reset();
+    return tracked;
+  }
+  tracked.status = lost_ ? TrackingStatus::kRelocalized : TrackingStatus::kTracked;
+  tracked.T_world_camera = pose->T_camera_world.inverse();
+  for (const Match& match : pose->inliers) tracked.landmarks[match.feature] = match.landmark;
+  remember(tracked, map);
+  return tracked;
+}
+
+std::optional<Tracker::PoseFromMatches> Tracker::find_pose(const TrackedFrame& frame,
+                                                           const Features& features,
+                                                           const Map& map,
+                                                           const PlaceIndex& places) const {
+  if (!lost_) {
+    if (auto pose = track_last_frame(frame, features, map)) return pose;
+    if (auto pose = track_reference(frame, features, map)) return pose;
+  }
+  return relocalize(frame, features, map, places);
+}
+
+std::optional<Tracker::PoseFromMatches> Tracker::relocalize(const TrackedFrame& frame,
+                                                            const Features& features,
+                                                            const Map& map,
+                                                            const PlaceIndex& places) const {
+  const std::optional<Relocalization> found = relocalizer_.find(frame.id, features, map, places);
+  if (!found) return std::nullopt;
+  PoseFromMatches pose{found->T_camera_world, {}};
+  for (const auto& [feature, landmark] : found->matches) {
+    pose.inliers.push_back({feature, landmark, map.landmark(landmark).p_world});
+  }
+  return pose;
+}
+
+// The features were corrected with the velocity that was expected; now it is known.
+Tracker::PoseFromMatches Tracker::refine_shutter(const TrackedFrame& frame,
+                                                 Features& features,
+                                                 const PoseFromMatches& pose,
+                                                 const Map& map) {
+  const CameraVelocity velocity = mean_velocity(
+      last_pose(map).inverse() * pose.T_camera_world.inverse(), frame.stamp_s - last_->stamp_s);
+  features = undo_rolling_shutter(std::move(features), camera_, readout_s(), velocity);
+  PoseFromMatches refined = optimize(features, pose.T_camera_world, pose.inliers);
+
+  std::vector<PoseObservation> observations;
+  std::vector<double> rows;
+  for (const Match& match : refined.inliers) {
+    observations.push_back({match.p_world, measure_(features, match.feature)});
+    rows.push_back(static_cast<double>(features.raw_px[match.feature].y()) / camera_.height_px -
+                   0.5);
+  }
+  readout_.update(refined.T_camera_world, velocity, observations, rows);
+  return refined;
+}
+
+void Tracker::set_reference(KeyframeId keyframe, const Map& map) {
+  last_->reference = keyframe;
+  last_->landmarks = map.keyframe(keyframe).landmarks;
+  T_reference_last_ = Eigen::Isometry3d::Identity();
+}
+
+Eigen::Isometry3d Tracker::last_pose(const Map& map) const {
+  return map.T_world_keyframe(last_->reference) * T_reference_last_;
+}
+
+std::optional<Eigen::Isometry3d> Tracker::expected_pose(double stamp_s, const Map& map) const {
+  if (lost_ || !last_) return std::nullopt;
+  return last_pose(map) * motion_.predict(stamp_s - last_->stamp_s);
+}
+
+void Tracker::remember(const TrackedFrame& frame, const Map& map) {
+  if (lost_) {
+    motion_.reset();
+  } else {
+    motion_.set(last_pose(map).inverse() * frame.T_world_camera, frame.stamp_s - last_->stamp_s);
+  }
+  T_reference_last_ = map.T_world_keyframe(frame.reference).inverse() * frame.T_world_camera;
+  last_ = frame;
+  lost_ = false;
+}
+
+Tracker::PoseFromMatches Tracker::optimize(const Features& features,
+                                           const Eigen::Isometry3d& initial,
+                                           const Matches& matches) const {
+  std::vector<PoseObservation> observations;
+  observations.reserve(matches.size());
+  for (const Match& match : matches) {
+    observations.push_back({match.p_world, measure_(features, match.feature)});
+  }
+  const PoseEstimate estimate = optimize_pose(camera_, initial, observations);
+  PoseFromMatches result{estimate.T_camera_world, {}};
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    if (estimate.inlier[i] != 0) result.inliers.push_back(matches[i]);
+  }
+  return result;
+}
+
+Tracker::Matches Tracker::match_last_frame(const Features& features,
+                                           const Map& map,
+                                           const Eigen::Isometry3d& T_camera_world,
+                                           double radius_px) const {
+  const Eigen::Isometry3d T_world_last = last_pose(map);
+  const Features& last = *last_->features;
+  Matches points;
+  std::vector<Projection> projections;
+  std::vector<float> angles;
+  std::unordered_set<LandmarkId> known;  // two features' landmarks may have been merged since
+  for (std::uint32_t i = 0; i < last.size(); ++i) {
+    const LandmarkId id = map.resolve(last_->landmarks[i]);
+    if (id.valid() ? !known.insert(id).second : !measure_.has_depth(last, i)) continue;
+    const Eigen::Vector3d p_world =
+        id.valid() ? map.landmark(id).p_world
+                   : T_world_last * camera_.unproject(last.px[i].cast<double>(),
+                                                      static_cast<double>(last.depth_m[i]));
+    const Eigen::Vector3d p_camera = T_camera_world * p_world;
+    if (!in_view(camera_, p_camera)) continue;
+    const int level = last.level[i];
+    const double scale = static_cast<double>(measure_.level_scales()[last.level[i]]);
+    const double inverse_depth = 1.0 / p_camera.z();
+    projections.push_back({camera_.project(p_camera).cast<float>(),
+                           static_cast<float>(radius_px * scale),
+                           static_cast<float>(inverse_depth),
+                           inverse_depth_gate(inverse_depth),
+                           level - 1,
+                           level + 1,
+                           &last.descriptors[i]});
+    points.push_back({0, id, p_world});
+    angles.push_back(last.angle_deg[i]);
+  }
+  const std::vector<FeatureMatch> found =
+      match_projections(projections, features, {}, {.max_distance = 90});
+  Matches matches;
+  for (const FeatureMatch& match : keep_consistent_rotations(found, angles, features.angle_deg)) {
+    Match point = points[match.query];
+    point.feature = match.feature;
+    matches.push_back(point);
+  }
+  return matches;
+}
+
+std::optional<Tracker::PoseFromMatches> Tracker::track_last_frame(const TrackedFrame& frame,
+                                                                  const Features& features,
+                                                                  const Map& map) const {
+  const Eigen::Isometry3d T_camera_world = expected_pose(frame.stamp_s, map)->inverse();
+  Matches matches = match_last_frame(features, map, T_camera_world, config_.frame_search_radius_px);
+  if (std::ssize(matches) < kMinFrameMatches) {
+    matches = match_last_frame(features, map, T_camera_world, 2 * config_.frame_search_radius_px);
+  }
+  if (std::ssize(matches) < kMinFrameMatches) return std::nullopt;
+  PoseFromMatches pose = optimize(features, T_camera_world, matches);
+  if (pose.inliers.size() < kMinFrameInliers) return std::nullopt;
+  return pose;
+}
+
+std::optional<Tracker::PoseFromMatches> Tracker::track_reference(const TrackedFrame& frame,
+                                                                 const Features& features,
+                                                                 const Map& map) const {
+  const Keyframe& reference = map.keyframe(map.anchor(frame.reference).keyframe);
+  const std::vector<FeatureMatch> found = match_all(*reference.features,
+                                                    features_with_landmark(reference),
+                                                    features,
+                                                    {.max_distance = 60, .max_ratio = 0.7});
+  Matches matches;
+  for (const FeatureMatch& match :
+       keep_consistent_rotations(found, reference.features->angle_deg, features.angle_deg)) {
+    const LandmarkId id = reference.landmarks[match.query];
+    matches.push_back({match.feature, id, map.landmark(id).p_world});
+  }
+  if (std::ssize(matches) < kMinFrameMatches) return std::nullopt;
+  PoseFromMatches pose = optimize(features, last_pose(map).inverse(), matches);
+  if (pose.inliers.size() < kMinFrameInliers) return std::nullopt;
+  return pose;
+}
+
+// Sets the frame's reference to the key frame that shares most with it.
+std::vector<LandmarkId> Tracker::local_landmarks(TrackedFrame& frame,
+                                                 const Matches& matches,
+                                                 const Map& map) const {
+  std::vector<LandmarkId> seen;
+  for (const Match& match : matches) {
+    if (match.landmark.valid()) seen.push_back(match.landmark);
+  }
+  std::vector<CovisibleKeyframe> keyframes = keyframes_seeing(map, seen);
+  const KeyframeId nearest =
+      keyframes.empty() ? map.anchor(frame.reference).keyframe : keyframes.front().id;
+  frame.reference = nearest;
+  for (const CovisibleKeyframe& neighbor : covisible_keyframes(map, nearest)) {
+    keyframes.push_back(neighbor);
+  }
+  std::vector<KeyframeId> chosen = {nearest};
+  for (const CovisibleKeyframe& keyframe : keyframes) {
+    if (std::ssize(chosen) >= config_.local_keyframes) break;
+    if (std::ranges::find(chosen, keyframe.id) == chosen.end()) chosen.push_back(keyframe.id);
+  }
+  std::unordered_set<LandmarkId> known(seen.begin(), seen.end());
+  std::vector<LandmarkId> landmarks;
+  for (const KeyframeId id : chosen) {
+    for (const LandmarkId landmark : map.keyframe(id).landmarks) {
+      if (landmark.valid() && known.insert(landmark).second) landmarks.push_back(landmark);
+    }
+  }
+  return landmarks;
+}
+
+Tracker::PoseFromMatches Tracker::track_local_map(TrackedFrame& frame,
+                                                  const Features& features,
+                                                  const PoseFromMatches& start,
+                                                  const Map& map) const {
+  Matches matches;
+  std::vector<std::uint8_t> taken(features.size(), 0);
+  for (const Match& match : start.inliers) {
+    if (!match.landmark.valid()) continue;  // a point of the last frame alone has done its work
+    matches.push_back(match);
+    taken[match.feature] = 1;
+    frame.expected.push_back(match.landmark);
+  }
+  std::vector<LandmarkId> projected;
+  std::vector<Projection> projections;
+  for (const LandmarkId id : local_landmarks(frame, matches, map)) {
+    const std::optional<Projection> projection = project_landmark(camera_,
+                                                                  measure_.level_scales(),
+                                                                  start.T_camera_world,
+                                                                  map.landmark(id),
+                                                                  config_.map_search_radius_px);
+    if (!projection) continue;
+    projected.push_back(id);
+    projections.push_back(*projection);
+    frame.expected.push_back(id);
+  }
+  for (const FeatureMatch& match :
+       match_projections(projections, features, taken, {.max_distance = 90, .max_ratio = 0.8})) {
+    const LandmarkId id = projected[match.query];
+    matches.push_back({match.feature, id, map.landmark(id).p_world});
+  }
+  return optimize(features, start.T_camera_world, matches);
+}
+
+}  // namespace stillmap

@@ -1,0 +1,374 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/slam/tracking/tracker.hpp"
+
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/paths.hpp"
+#include "tests/support/simulated_map.hpp"
+
+namespace stillmap {
+namespace {
+
+constexpr ObservationNoise kNoise{
+    .pixel_sigma_px = 0.7, .inverse_depth_sigma = 0.01, .flipped_bits = 15};
+constexpr MeasurementConfig kMeasurement{.pixel_sigma_px = 0.7, .inverse_depth_sigma = 0.01};
+
+// A camera in a world whose map is known and true, so that only tracking errs.
+class Walk {
+ public:
+  Walk(const CameraPath& path, const TrackerConfig& config, double readout_s = 0)
+      : path_(path),
+        readout_s_(readout_s),
+        simulated_(make_map(path)),
+        tracker_(config,
+                 {},
+                 world().camera(),
+                 MeasurementModel(kMeasurement, world().level_scales()),
+                 0) {
+    const Keyframe& first = simulated_.map.keyframe(KeyframeId(0));
+    first_ = tracker_.start(frame_at(0), first.features);
+    tracker_.set_reference(KeyframeId(0), simulated_.map);
+  }
+
+  [[nodiscard]] static const SimulatedWorld& world() {
+    static const SimulatedWorld kWorld({}, simulated_camera());
+    return kWorld;
+  }
+
+  [[nodiscard]] Observed observe(int k, const ObservationNoise& noise) {
+    return world().observe_rolling(path_, time(k), readout_s_, noise, rng_);
+  }
+  TrackedFrame track(int k, Features features) {
+    return tracker_.track(
+        frame_at(k), std::move(features), simulated_.map, index_of(simulated_.map));
+  }
+
+  [[nodiscard]] double error_m(const TrackedFrame& frame) const {
+    return (frame.T_world_camera.translation() - path_(frame.stamp_s).translation()).norm();
+  }
+
+  // Squared error in units of what the inliers' noise implies: 6 on average for an estimate that
+  // is as good as its measurements.
+  [[nodiscard]] double normalized_error(const TrackedFrame& frame) const {
+    const Eigen::Isometry3d truth = path_(frame.stamp_s).inverse();
+    const MeasurementModel measure(kMeasurement, world().level_scales());
+    Matrix6d information = Matrix6d::Zero();
+    for (std::size_t i = 0; i < frame.landmarks.size(); ++i) {
+      if (!frame.landmarks[i].valid()) continue;
+      const Eigen::Vector3d p = truth * map().landmark(frame.landmarks[i]).p_world;
+      const Eigen::Matrix<double, 3, 6> J =
+          pose_jacobian(reprojection_jacobian(world().camera(), measure(*frame.features, i), p), p);
+      information += J.transpose() * J;
+    }
+    const Eigen::Isometry3d error = frame.T_world_camera.inverse() * path_(frame.stamp_s);
+    Vector6d e;
+    e << error.translation(), so3_log(Eigen::Quaterniond(error.linear()));
+    return e.dot(information * e);
+  }
+
+  [[nodiscard]] const Map& map() const { return simulated_.map; }
+  [[nodiscard]] const SimulatedMap& simulated() const { return simulated_; }
+  [[nodiscard]] const TrackedFrame& first() const { return first_; }
+  [[nodiscard]] double readout_s() const { return tracker_.readout_s(); }
+  [[nodiscard]] static double time(int k) { return k * kFrameInterval_s; }
+  [[nodiscard]] std::mt19937& rng() { return rng_; }
+
+ private:
+  [[nodiscard]] static RgbdFrame frame_at(int k) {
+    RgbdFrame frame;
+    frame.id = FrameId(static_cast<std::uint32_t>(k));
+    frame.stamp.seconds = time(k);
+    return frame;
+  }
+
+  [[nodiscard]] static SimulatedMap make_map(const CameraPath& path) {
+    std::vector<Eigen::Isometry3d> poses;
+    for (int k = 0; k < 300; k += 15) poses.push_back(path(time(k)));
+    std::mt19937 rng(2);
+    return make_true_map(world(), poses, kNoise, rng);
+  }
+
+  CameraPath path_;
+  double readout_s_;
+  SimulatedMap simulated_;
+  Tracker tracker_;
+  TrackedFrame first_;
+  std::mt19937 rng_{3};
+};
+
+TrackerConfig without_calibration() {
+  TrackerConfig config;
+  config.shutter.calibrate = false;
+  return config;
+}
+
+Tracker make_tracker() {
+  const MeasurementModel measure(kMeasurement, Walk::world().level_scales());
+  return Tracker(without_calibration(), {}, simulated_camera(), measure, 0);
+}
+
+Eigen::Isometry3d path(double t) {
+  return swinging(t);
+}
+
+TEST(Tracker, FollowsASmoothPathAsWellAsTheNoiseAllows) {
+  Walk walk(path, without_calibration());
+  EXPECT_EQ(walk.first().status, TrackingStatus::kInitialized);
+  double normalized = 0;
+  constexpr int kFrames = 150;
+  for (int k = 1; k <= kFrames; ++k) {
+    const Observed seen = walk.observe(k, kNoise);
+    const TrackedFrame frame = walk.track(k, seen.features);
+    ASSERT_EQ(frame.status, TrackingStatus::kTracked) << k;
+    EXPECT_LT(walk.error_m(frame), 0.015) << k;
+    EXPECT_GT(frame.inliers, 100) << k;
+    normalized += walk.normalized_error(frame) / kFrames;
+    int wrong = 0;
+    for (std::size_t i = 0; i < frame.landmarks.size(); ++i) {
+      if (!frame.landmarks[i].valid()) continue;
+      const Landmark& landmark = walk.map().landmark(frame.landmarks[i]);
+      wrong += true_point(walk.simulated(), landmark) != seen.points[i] ? 1 : 0;
+    }
+    EXPECT_EQ(wrong, 0) << k;
+  }
+  // The mean of 150 has a standard deviation of 0.28.
+  EXPECT_NEAR(normalized, 6.0, 1.2);
+}
+
+TEST(Tracker, ExpectsTheLandmarksThatItFindsAndReadsTheMapOnly) {
+  Walk walk(path, without_calibration());
+  const TrackedFrame frame = walk.track(1, walk.observe(1, kNoise).features);
+  const std::set<LandmarkId> expected(frame.expected.begin(), frame.expected.end());
+  EXPECT_EQ(expected.size(), frame.expected.size());
+  int found = 0;
+  for (const LandmarkId id : frame.landmarks) {
+    if (!id.valid()) continue;
+    ++found;
+    EXPECT_TRUE(expected.contains(id));
+  }
+  EXPECT_EQ(found, frame.inliers);
+  EXPECT_TRUE(walk.map().has(frame.reference));
+}
+
+TEST(Tracker, StandsFortyPercentOfWrongDescriptors) {
+  Walk walk(path, without_calibration());
+  ObservationNoise noise = kNoise;
+  noise.wrong_descriptor_share = 0.4;
+  double normalized = 0;
+  for (int k = 1; k <= 60; ++k) {
+    const TrackedFrame frame = walk.track(k, walk.observe(k, noise).features);
+    ASSERT_EQ(frame.status, TrackingStatus::kTracked) << k;
+    EXPECT_LT(walk.error_m(frame), 0.015) << k;
+    normalized += walk.normalized_error(frame) / 60;
+  }
+  EXPECT_NEAR(normalized, 6.0, 2.0);
+}
+
+TEST(Tracker, FollowsAPatternWhoseCornersLookAlike) {
+  // Some 15 of the corners in view look like each: appearance alone finds nothing, only the last
+  // frame says where each is.
+  const SimulatedWorld world({.kinds = 20}, simulated_camera());
+  std::mt19937 rng(2);
+  const Observed first = world.observe(path(0), kNoise, rng);
+  SimulatedMap simulated(world);
+  add_true_keyframe(simulated, world, path(0), first);
+  Tracker tracker = make_tracker();
+  RgbdFrame frame;
+  (void)tracker.start(frame, std::make_shared<const Features>(first.features));
+  tracker.set_reference(KeyframeId(0), simulated.map);
+  for (std::uint32_t k = 1; k <= 10; ++k) {
+    frame.id = FrameId(k);
+    frame.stamp.seconds = k * kFrameInterval_s;
+    const Eigen::Isometry3d truth = path(frame.stamp.seconds);
+    const TrackedFrame tracked = tracker.track(
+        frame, world.observe(truth, kNoise, rng).features, simulated.map, PlaceIndex());
+    ASSERT_EQ(tracked.status, TrackingStatus::kTracked) << k;
+    EXPECT_LT((tracked.T_world_camera.translation() - truth.translation()).norm(), 0.02);
+  }
+}
+
+TEST(Tracker, StandsThirtyPercentOfMatchesThatMoved) {
+  Walk walk(path, without_calibration());
+  for (int k = 1; k <= 60; ++k) {
+    Features features = walk.observe(k, kNoise).features;
+    for (std::size_t i = 0; i < features.size(); ++i) {
+      if (i % 10 >= 3) continue;
+      features.raw_px[i].x() += 9.0F;  // all alike, as on something that walks by
+      features.ideal_px[i].x() += 9.0F;
+    }
+    const TrackedFrame frame = walk.track(k, std::move(features));
+    ASSERT_EQ(frame.status, TrackingStatus::kTracked) << k;
+    EXPECT_LT(walk.error_m(frame), 0.015) << k;
+  }
+}
+
+TEST(Tracker, IsMarkedLostWithoutFeaturesAndFindsBack) {
+  Walk walk(path, without_calibration());
+  for (int k = 1; k <= 40; ++k) {
+    const bool dark = k > 20 && k <= 30;
+    const Observed seen = dark ? Observed{} : walk.observe(k, kNoise);
+    const TrackedFrame frame = walk.track(k, seen.features);
+    const TrackingStatus expected = dark      ? TrackingStatus::kLost
+                                    : k == 31 ? TrackingStatus::kRelocalized
+                                              : TrackingStatus::kTracked;
+    ASSERT_EQ(frame.status, expected) << k;
+    EXPECT_EQ(frame.landmarks.size(), seen.features.size());
+    if (!dark) {
+      EXPECT_LT(walk.error_m(frame), 0.015) << k;
+    }
+  }
+}
+
+TEST(Tracker, FindsBackAtAnotherPlaceThanWhereItWasLost) {
+  Walk walk(path, without_calibration());
+  for (int k = 1; k <= 5; ++k) (void)walk.track(k, walk.observe(k, kNoise).features);
+  ASSERT_EQ(walk.track(6, {}).status, TrackingStatus::kLost);
+  // Two seconds later, with stamps that know nothing of it: constant velocity does not lead there.
+  const TrackedFrame frame = walk.track(66, walk.observe(66, kNoise).features);
+  EXPECT_EQ(frame.status, TrackingStatus::kRelocalized);
+  EXPECT_LT(walk.error_m(frame), 0.015);
+}
+
+TEST(Tracker, MergedLandmarksAndDroppedKeyframesReachIt) {
+  // The map changes between two frames: the reference is dropped, landmarks are merged, and the
+  // whole world moves. Tracking goes on in the moved world.
+  SimulatedMap simulated(Walk::world());
+  std::mt19937 rng(2);
+  const Observed first = Walk::world().observe(path(0), {}, rng);
+  for (int copy = 0; copy < 2;
+       ++copy) {  // two key frames at one place, with landmarks of their own
+    const KeyframeId id = add_bare_keyframe(simulated, path(0), first);
+    for (std::uint32_t i = 0; i < first.points.size(); ++i) {
+      simulated.map.add_landmark(Walk::world().points()[first.points[i]].position, {id, i});
+    }
+  }
+  Tracker tracker = make_tracker();
+  RgbdFrame frame;
+  (void)tracker.start(frame, std::make_shared<const Features>(first.features));
+  tracker.set_reference(KeyframeId(1), simulated.map);
+  const auto count = static_cast<std::uint32_t>(first.points.size());
+  for (std::uint32_t i = 0; i < count; ++i) {
+    simulated.map.merge_landmarks(LandmarkId(count + i), LandmarkId(i));
+  }
+  simulated.map.remove_keyframe(KeyframeId(1), KeyframeId(0));
+  const Eigen::Isometry3d moved =
+      make_pose(so3_exp(Eigen::Vector3d(0.5, -1, 2)), Eigen::Vector3d(10, -7, 3));
+  simulated.map.set_pose(KeyframeId(0), moved);
+  for (const LandmarkId id : simulated.map.landmark_ids()) {
+    simulated.map.set_position(id, moved * simulated.map.landmark(id).p_world);
+    simulated.map.refresh(id);
+  }
+  frame.id = FrameId(1);
+  frame.stamp.seconds = kFrameInterval_s;
+  const Observed second = Walk::world().observe(path(kFrameInterval_s), {}, rng);
+  const TrackedFrame tracked = tracker.track(frame, second.features, simulated.map, PlaceIndex());
+  ASSERT_EQ(tracked.status, TrackingStatus::kTracked);
+  EXPECT_EQ(tracked.reference, KeyframeId(0));
+  EXPECT_LT((tracked.T_world_camera.translation() - (moved * path(kFrameInterval_s)).translation())
+                .norm(),
+            1e-3);
+  for (const LandmarkId id : tracked.landmarks) {
+    if (id.valid()) {
+      EXPECT_LT(id.value, count);
+    }
+  }
+}
+
+// Each feature of `seen` again, a little beside and a level up, as corners often are.
+Observed with_twins(const Observed& seen) {
+  Observed doubled = seen;
+  Features& f = doubled.features;
+  for (std::size_t i = 0; i < seen.points.size(); ++i) {
+    f.raw_px.push_back(f.raw_px[i] + Eigen::Vector2f(0.5F, 0));
+    f.ideal_px.push_back(f.raw_px.back());
+    f.px.push_back(f.raw_px.back());
+    f.sensor_depth_m.push_back(f.sensor_depth_m[i]);
+    f.depth_m.push_back(f.depth_m[i]);
+    f.level.push_back(static_cast<std::uint8_t>(std::min(f.level[i] + 1, 7)));
+    f.angle_deg.push_back(f.angle_deg[i]);
+    f.descriptors.push_back(f.descriptors[i]);
+    f.descriptors.back()[0] ^= 0xff;
+    doubled.points.push_back(doubled.points[i]);
+  }
+  f.grid = FeatureGrid(f.px, 640, 480);
+  return doubled;
+}
+
+TEST(Tracker, UsesALandmarkOnceInAFrame) {
+  // Two features of the last frame saw two landmarks, which have become one since.
+  std::mt19937 rng(2);
+  const Observed seen = with_twins(Walk::world().observe(path(0), {}, rng));
+  SimulatedMap simulated(Walk::world());
+  const KeyframeId id = add_bare_keyframe(simulated, path(0), seen);
+  const auto count = static_cast<std::uint32_t>(seen.points.size());
+  for (std::uint32_t i = 0; i < count; ++i) {
+    simulated.map.add_landmark(Walk::world().points()[seen.points[i]].position, {id, i});
+  }
+  Tracker tracker = make_tracker();
+  RgbdFrame frame;
+  (void)tracker.start(frame, std::make_shared<const Features>(seen.features));
+  tracker.set_reference(id, simulated.map);
+  for (std::uint32_t i = 0; i < count / 2; ++i) {
+    simulated.map.merge_landmarks(LandmarkId(count / 2 + i), LandmarkId(i));
+  }
+  frame.id = FrameId(1);
+  frame.stamp.seconds = kFrameInterval_s;
+  const TrackedFrame tracked = tracker.track(frame, seen.features, simulated.map, PlaceIndex());
+  ASSERT_EQ(tracked.status, TrackingStatus::kTracked);
+  std::set<LandmarkId> used;
+  for (const LandmarkId landmark : tracked.landmarks) {
+    if (landmark.valid()) {
+      EXPECT_TRUE(used.insert(landmark).second) << landmark.value;
+    }
+  }
+}
+
+struct ShutterRun {
+  double rmse_m = 0;
+  double readout_s = 0;
+};
+
+// The second half of 240 frames, when the readout has been learnt.
+ShutterRun run_shutter(double readout_s, bool calibrate, double speed) {
+  TrackerConfig config;
+  config.shutter.calibrate = calibrate;
+  Walk walk([=](double t) { return swinging(t, speed); }, config, readout_s);
+  double sum = 0;
+  int count = 0;
+  for (int k = 1; k <= 240; ++k) {
+    const TrackedFrame frame = walk.track(k, walk.observe(k, kNoise).features);
+    EXPECT_EQ(frame.status, TrackingStatus::kTracked) << k;
+    if (k <= 120) continue;
+    sum += walk.error_m(frame) * walk.error_m(frame);
+    ++count;
+  }
+  return {std::sqrt(sum / count), walk.readout_s()};
+}
+
+TEST(Tracker, LearnsTheRollingShutterAndIsMuchBetterForIt) {
+  const ShutterRun with = run_shutter(0.03, true, 1.0), without = run_shutter(0.03, false, 1.0);
+  EXPECT_NEAR(with.readout_s, 0.03, 2e-3);
+  EXPECT_EQ(without.readout_s, 0);
+  EXPECT_LT(with.rmse_m, 0.3 * without.rmse_m);
+}
+
+TEST(Tracker, FindsNoRollingShutterWhereThereIsNone) {
+  const ShutterRun run = run_shutter(0, true, 1.0);
+  EXPECT_LT(run.readout_s, 1.5e-3);
+}
+
+TEST(Tracker, KeepsTheReadoutWhileTheCameraStands) {
+  // It moves for 4 s, stands for 10 s.
+  TrackerConfig config;
+  const CameraPath then_stands = [](double t) { return swinging(std::min(t, 4.0)); };
+  Walk walk(then_stands, config, 0.03);
+  for (int k = 1; k <= 420; ++k) {
+    (void)walk.track(k, walk.observe(k, kNoise).features);
+  }
+  EXPECT_NEAR(walk.readout_s(), 0.03, 2e-3);
+}
+
+}  // namespace
+}  // namespace stillmap

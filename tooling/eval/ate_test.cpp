@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tooling/eval/ate.hpp"
+
+#include <cmath>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "stillmap/geometry/se3.hpp"
+#include "stillmap/io/trajectory_io.hpp"
+#include "tests/support/image_files.hpp"
+#include "tests/support/trajectories.hpp"
+
+namespace stillmap {
+namespace {
+
+Trajectory at_positions(const std::vector<Eigen::Vector3d>& positions, double start_s) {
+  Trajectory trajectory;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    StampedPose pose;
+    pose.stamp = {start_s + static_cast<double>(i), fmt::format("pose {}", i)};
+    pose.T_world_camera.translation() = positions[i];
+    trajectory.push_back(pose);
+  }
+  return trajectory;
+}
+
+// Ends of a cross of arms 1, and of one of arms 1.1 and 1.2: turning or moving either can only make
+// the sum of squares larger, so that what is left is known.
+const std::vector<Eigen::Vector3d> kTruth = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}};
+const std::vector<Eigen::Vector3d> kLarger = {{1.1, 0, 0}, {-1.1, 0, 0}, {0, 1.2, 0}, {0, -1.2, 0}};
+
+TEST(AbsoluteTrajectoryError, LeavesTheResidualsThatNoMotionCanRemove) {
+  const Eigen::Isometry3d T_truth_estimate =
+      make_pose(so3_exp(Eigen::Vector3d(0.4, -1.1, 2.0)), {5.0, -7.0, 1.0});
+  std::vector<Eigen::Vector3d> moved;
+  for (const Eigen::Vector3d& p : kLarger) moved.push_back(T_truth_estimate.inverse() * p);
+  const std::optional<AteResult> ate =
+      absolute_trajectory_error(at_positions(kTruth, 10.0), at_positions(moved, 10.01));
+  ASSERT_TRUE(ate);
+  EXPECT_TRUE(ate->T_groundtruth_estimate.isApprox(T_truth_estimate, 1e-12));
+  ASSERT_EQ(ate->pairs.size(), 4U);
+  EXPECT_NEAR(ate->pairs[1].error_m, 0.1, 1e-12);
+  EXPECT_NEAR(ate->pairs[2].error_m, 0.2, 1e-12);
+  EXPECT_EQ(ate->pairs[2].stamp.text, "pose 2");
+  EXPECT_EQ(ate->pairs[2].groundtruth, Eigen::Vector3d(0, 1, 0));
+  EXPECT_LT((ate->pairs[2].estimate_aligned - Eigen::Vector3d(0, 1.2, 0)).norm(), 1e-12);
+  EXPECT_NEAR(ate->translation_m.rmse, std::sqrt(0.025), 1e-12);
+  EXPECT_NEAR(ate->translation_m.mean, 0.15, 1e-12);
+  EXPECT_NEAR(ate->translation_m.median, 0.15, 1e-12);
+  EXPECT_NEAR(ate->translation_m.std, 0.05, 1e-12);
+  EXPECT_NEAR(ate->translation_m.min, 0.1, 1e-12);
+  EXPECT_NEAR(ate->translation_m.max, 0.2, 1e-12);
+}
+
+TEST(AbsoluteTrajectoryError, CountsOnlyPosesWithGroundTruthNearInTime) {
+  Trajectory truth = at_positions(kTruth, 10.0);
+  Trajectory estimate = at_positions(kTruth, 10.0);
+  estimate[3].stamp.seconds += 0.03;
+  const std::optional<AteResult> ate = absolute_trajectory_error(truth, estimate);
+  ASSERT_TRUE(ate);
+  EXPECT_EQ(ate->pairs.size(), 3U);
+  EXPECT_LT(ate->translation_m.max, 1e-12);
+}
+
+TEST(AbsoluteTrajectoryError, IsNothingWithoutThreePairs) {
+  EXPECT_FALSE(absolute_trajectory_error(at_positions(kTruth, 0.0), at_positions(kTruth, 100.0)));
+  EXPECT_FALSE(absolute_trajectory_error(at_positions(kTruth, 0.0), at_positions(kTruth, 2.0)));
+  EXPECT_FALSE(absolute_trajectory_error({}, {}));
+}
+
+TEST(AbsoluteTrajectoryError, EqualsTheScriptOnPublishedTrajectories) {
+  const std::filesystem::path folder = published_folder(shared_data_folder());
+  if (folder.empty()) GTEST_SKIP() << "no shared test data: set STILLMAP_DATA";
+  for (const PublishedFigures& expected : kPublished) {
+    SCOPED_TRACE(expected.name);
+    const std::string name = expected.name;
+    const std::optional<AteResult> ate =
+        absolute_trajectory_error(read_trajectory(folder / (name + ".groundtruth.txt")),
+                                  read_trajectory(folder / (name + ".v3d-slam.txt")));
+    ASSERT_TRUE(ate);
+    EXPECT_EQ(ate->pairs.size(), expected.ate_pairs);
+    EXPECT_NEAR(ate->translation_m.rmse, expected.ate_rmse, 1e-6);
+    EXPECT_NEAR(ate->translation_m.mean, expected.ate_mean, 1e-6);
+    EXPECT_NEAR(ate->translation_m.median, expected.ate_median, 1e-6);
+    EXPECT_NEAR(ate->translation_m.std, expected.ate_std, 1e-6);
+  }
+}
+
+}  // namespace
+}  // namespace stillmap

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tooling/eval/rpe.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "stillmap/core/error.hpp"
+
+namespace stillmap {
+namespace {
+
+// The pose nearest in time, by bisection. Of two equally near ones it is the one that bisection
+// meets first: stamps that are rounded make such ties frequent, and the benchmark's figures depend
+// on them.
+std::size_t nearest_index(const Trajectory& trajectory, double seconds) {
+  std::size_t begin = 0, end = trajectory.size();
+  std::size_t best = 0;
+  double best_distance = std::abs(trajectory.front().stamp.seconds - seconds);
+  while (begin < end) {
+    const std::size_t middle = begin + (end - begin) / 2;
+    const double offset = trajectory[middle].stamp.seconds - seconds;
+    if (std::abs(offset) < best_distance) {
+      best_distance = std::abs(offset);
+      best = middle;
+    }
+    if (offset > 0) {
+      end = middle;
+    } else {
+      begin = middle + 1;
+    }
+  }
+  return best;
+}
+
+double median_interval_s(const Trajectory& trajectory) {
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < trajectory.size(); ++i) {
+    intervals.push_back(trajectory[i].stamp.seconds - trajectory[i - 1].stamp.seconds);
+  }
+  return statistics(intervals).median;
+}
+
+double script_angle_deg(const Eigen::Matrix3d& rotation) {
+  const double cosine = std::clamp((rotation.trace() - 1.0) / 2.0, -1.0, 1.0);
+  return std::acos(cosine) * 180.0 / std::numbers::pi;
+}
+
+// Ground truth near in time, where there is any.
+class NearGroundtruth {
+ public:
+  explicit NearGroundtruth(const Trajectory& trajectory)
+      : trajectory_(trajectory), max_difference_s_(2.0 * median_interval_s(trajectory)) {}
+
+  [[nodiscard]] std::optional<Eigen::Isometry3d> pose(double seconds) const {
+    const StampedPose& nearest = trajectory_[nearest_index(trajectory_, seconds)];
+    if (std::abs(nearest.stamp.seconds - seconds) > max_difference_s_) return std::nullopt;
+    return nearest.T_world_camera;
+  }
+
+ private:
+  const Trajectory& trajectory_;
+  double max_difference_s_;
+};
+
+}  // namespace
+
+std::optional<RpeResult> relative_pose_error(const Trajectory& groundtruth,
+                                             const Trajectory& estimate,
+                                             double delta_s) {
+  STILLMAP_CHECK(delta_s > 0.0);
+  if (groundtruth.size() < 2) return std::nullopt;
+  const NearGroundtruth truth(groundtruth);
+  std::vector<double> errors_m, errors_deg;
+  for (const StampedPose& from : estimate) {
+    const std::size_t j = nearest_index(estimate, from.stamp.seconds + delta_s);
+    if (j + 1 == estimate.size()) continue;  // nothing tells whether it is delta_s later
+    const StampedPose& to = estimate[j];
+    const std::optional<Eigen::Isometry3d> truth_from = truth.pose(from.stamp.seconds);
+    const std::optional<Eigen::Isometry3d> truth_to = truth.pose(to.stamp.seconds);
+    if (!truth_from || !truth_to) continue;
+    const Eigen::Isometry3d error =
+        (from.T_world_camera.inverse() * to.T_world_camera) * (truth_to->inverse() * *truth_from);
+    errors_m.push_back(error.translation().norm());
+    errors_deg.push_back(script_angle_deg(error.linear()));
+  }
+  if (errors_m.size() < 2) return std::nullopt;
+  return RpeResult{delta_s, errors_m.size(), statistics(errors_m), statistics(errors_deg)};
+}
+
+}  // namespace stillmap

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "stillmap/core/images.hpp"
+#include "stillmap/geometry/camera.hpp"
+
+namespace stillmap {
+
+/// A frame sees through a point when it measures surface behind it by more than this, metres, ...
+inline constexpr double kSeeThroughMargin_m = 0.05;
+/// ... and by this many standard deviations of the measured depth, which are ...
+inline constexpr double kSeeThroughSigmas = 3;
+/// ... this times the square of the depth, 1/m.
+inline constexpr double kDepthSigma = 0.0015;
+/// So many frames that see through a point show that it is not there.
+inline constexpr std::size_t kSeeThroughFrames = 3;
+
+/// What is left in a map of things that are not there, as far as frames tell.
+struct Residue {
+  std::size_t points = 0;        ///< of the map
+  std::size_t seen_through = 0;  ///< of these, by at least kSeeThroughFrames frames
+  std::size_t frames = 0;
+
+  /// Of the points; 0 for no points.
+  [[nodiscard]] double ratio() const {
+    return points > 0 ? static_cast<double>(seen_through) / static_cast<double>(points) : 0.0;
+  }
+};
+
+/// Tests a map against the depth images of a sequence, which needs no truth.
+class SeeThroughTest {
+ public:
+  /// Points are in the world of the frames' poses, finite.
+  SeeThroughTest(const CameraModel& camera, std::vector<Eigen::Vector3f> points_world);
+
+  /// `depth` has the camera's size. The measured depth of a point is that of the raw pixel whose
+  /// centre is nearest to where the point falls.
+  void add(const DepthImage& depth, const Eigen::Isometry3d& T_world_camera);
+
+  [[nodiscard]] Residue result() const;
+
+ private:
+  [[nodiscard]] bool sees_through(const DepthImage& depth, const Eigen::Vector3d& p_camera) const;
+
+  CameraModel camera_;
+  Eigen::AlignedBox2d ideal_image_px_;  ///< where raw pixels fall without distortion
+  std::vector<Eigen::Vector3f> points_;
+  std::vector<std::uint8_t> times_;  ///< of each point, up to kSeeThroughFrames
+  std::size_t frames_ = 0;
+};
+
+}  // namespace stillmap

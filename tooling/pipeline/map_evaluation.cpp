@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tooling/pipeline/map_evaluation.hpp"
+
+#include "stillmap/io/trajectory_io.hpp"
+#include "tooling/eval/map_alignment.hpp"
+#include "tooling/eval/map_files.hpp"
+
+namespace stillmap {
+
+std::optional<SequenceTruth> read_sequence_truth(const TumSequence& sequence) {
+  const std::filesystem::path static_file = sequence.folder() / "truth" / "static_map.ply";
+  const std::filesystem::path dynamic_file = sequence.folder() / "truth" / "dynamic_map.ply";
+  const std::optional<std::filesystem::path> groundtruth = sequence.groundtruth_file();
+  if (!groundtruth || !std::filesystem::exists(static_file)) return std::nullopt;
+  const bool with_dynamic = std::filesystem::exists(dynamic_file);
+  return SequenceTruth{.groundtruth = read_trajectory(*groundtruth),
+                       .map = read_map_truth(
+                           static_file, with_dynamic ? std::optional(dynamic_file) : std::nullopt)};
+}
+
+std::optional<MapQuality> run_map_quality(const PointCloud& map,
+                                          const Trajectory& estimate,
+                                          const SequenceTruth& truth) {
+  const std::optional<Eigen::Isometry3d> alignment = map_alignment(truth.groundtruth, estimate);
+  if (!alignment) return std::nullopt;
+  const PointCloud aligned = moved(map, *alignment);
+  check_extent(aligned, "the map, moved to the ground truth");
+  return map_quality(aligned, truth.map);
+}
+
+}  // namespace stillmap

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <future>
+#include <map>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "stillmap/concurrency/worker.hpp"
+#include "stillmap/core/rgbd_frame.hpp"
+#include "stillmap/perception/segmentation/segmenter.hpp"
+#include "tooling/pipeline/live_record.hpp"
+
+namespace stillmap {
+
+/// What a network has found in a frame.
+struct SegmentedFrame {
+  FramePtr frame;
+  FrameDetections detections;
+};
+
+struct ObjectFeedStep {
+  std::vector<SegmentedFrame> arrived;  ///< since the last step, in order
+  bool looking = false;                 ///< at the step's frame, from now on
+};
+
+/// The objects of some frames, which come in while later frames are processed.
+class ObjectFeed {
+ public:
+  ObjectFeed() = default;
+  ObjectFeed(const ObjectFeed&) = delete;
+  ObjectFeed& operator=(const ObjectFeed&) = delete;
+  virtual ~ObjectFeed() = default;
+
+  /// To be called for each frame that is to be processed, in order. `needs_own`: waits for those of
+  /// this very frame, which come last. Throws what the network throws.
+  [[nodiscard]] virtual ObjectFeedStep step(const FramePtr& frame, bool needs_own) = 0;
+};
+
+/// A network on a thread of its own that looks at one frame after another, whenever it is idle and
+/// `gap_frames` have passed since the last it looked at.
+class NetworkFeed : public ObjectFeed {
+ public:
+  /// The segmenter outlives this.
+  NetworkFeed(const Segmenter& segmenter, int gap_frames)
+      : segmenter_(segmenter), gap_frames_(gap_frames) {}
+
+  [[nodiscard]] ObjectFeedStep step(const FramePtr& frame, bool needs_own) override;
+
+ private:
+  struct Look {
+    FramePtr frame;
+    std::future<FrameDetections> detections;
+  };
+  void look_at(const FramePtr& frame);
+  [[nodiscard]] SegmentedFrame finish_look();
+
+  const Segmenter& segmenter_;
+  int gap_frames_;
+  std::optional<FrameId> last_;
+  std::optional<Look> look_;
+  // Tracking goes first. Last: it uses all else.
+  Worker worker_{Worker::Priority::kLow};
+};
+
+/// The same frames' objects at the same steps as in a run that was recorded.
+class RecordedFeed : public ObjectFeed {
+ public:
+  /// The segmenter outlives this.
+  RecordedFeed(const Segmenter& segmenter, LiveRecord record);
+
+  /// The frames must be those of the record. Throws Error where the record has no objects of a
+  /// frame that needs its own.
+  [[nodiscard]] ObjectFeedStep step(const FramePtr& frame, bool needs_own) override;
+
+ private:
+  const Segmenter& segmenter_;
+  LiveRecord record_;
+  std::set<FrameId> looked_at_;
+  std::map<FrameId, FramePtr> held_;
+  std::size_t next_ = 0;
+};
+
+}  // namespace stillmap

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tooling/pipeline/object_log.hpp"
+
+#include <numbers>
+#include <sstream>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace stillmap {
+namespace {
+
+using nlohmann::json;
+
+// A person, and a chair that it pushes, as a camera sees them that looks along the world's x.
+FrameResult pushed_chair() {
+  FrameResult result;
+  result.tracked.T_world_camera.linear() =
+      Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  result.tracked.T_world_camera.translation() << 1, 2, 3;
+  FrameDynamics& dynamics = result.dynamics;
+  dynamics.objects.objects.resize(2);
+  dynamics.judged.states.resize(2);
+  dynamics.motions.resize(2);
+  dynamics.objects.objects[0].detection.class_name = "person";
+  dynamics.objects.objects[1].detection.class_name = "chair \"\xff";
+  ObjectState& person = dynamics.judged.states[0];
+  person = {.track = TrackId(4),
+            .category = Category::kDynamic,
+            .dynamic = true,
+            .reason = StateReason::kDynamicClass,
+            .person = {},
+            .box = {10, 20.26, 30, 40},
+            .filled = true,
+            .depths = {},
+            .median_depth_m = 0};
+  ObjectState& chair = dynamics.judged.states[1];
+  chair = {.track = TrackId(7),
+           .category = Category::kPotentiallyDynamic,
+           .dynamic = true,
+           .reason = StateReason::kTouching,
+           .person = TrackId(4),
+           .box = {1, 2, 3, 4},
+           .filled = false,
+           .depths = {},
+           .median_depth_m = 0};
+  dynamics.motions[1] = {.track = TrackId(7),
+                         .motion = Motion::kMovedBySomeone,
+                         .p_world = Eigen::Vector3d(3, 2, 3.00004),
+                         .velocity_m_s = {0.5, 0, -0.00001},
+                         .velocity_error_m_s = 0.1,
+                         .by = TrackId(4)};
+  return result;
+}
+
+std::vector<json> lines_of(const std::string& text) {
+  std::vector<json> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(json::parse(line));
+  return lines;
+}
+
+TEST(ObjectLog, SaysAllOfAnObject) {
+  const FrameResult result = pushed_chair();
+  const std::vector<LoggedFrame> log = {log_frame({5.0, "5.000000"}, result)};
+  const Trajectory as_it_was = {{{5.0, "5.000000"}, result.tracked.T_world_camera}};
+  const std::vector<json> lines = lines_of(objects_jsonl(log, as_it_was));
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].at("stamp"), "5.000000");
+  const json& objects = lines[0].at("objects");
+  ASSERT_EQ(objects.size(), 2U);
+  EXPECT_EQ(objects[0],
+            (json{{"track", 4},
+                  {"class", "person"},
+                  {"category", "dynamic"},
+                  {"state", "dynamic"},
+                  {"reason", "dynamic class"},
+                  {"motion", "unknown"},
+                  {"by", nullptr},
+                  {"person", nullptr},
+                  {"box", {10.0, 20.3, 30.0, 40.0}},
+                  {"filled", true},
+                  {"p_world", nullptr},
+                  {"v_world", nullptr}}));
+  EXPECT_EQ(objects[1].at("class"), "chair \"\xEF\xBF\xBD");
+  EXPECT_EQ(objects[1].at("category"), "potentially dynamic");
+  EXPECT_EQ(objects[1].at("reason"), "somebody at it");
+  EXPECT_EQ(objects[1].at("motion"), "moved by someone");
+  EXPECT_EQ(objects[1].at("by"), 4);
+  EXPECT_EQ(objects[1].at("person"), 4);
+  EXPECT_EQ(objects[1].at("p_world"), (json{3.0, 2.0, 3.0}));
+  EXPECT_EQ(objects[1].at("v_world"), (json{0.5, 0.0, 0.0}));
+}
+
+TEST(ObjectLog, PlacesAreUnderFinalPoses) {
+  const FrameResult result = pushed_chair();
+  const std::vector<LoggedFrame> log = {log_frame({4.0, "4"}, {}), log_frame({5.0, "5"}, result)};
+  // The chair is 2 m straight ahead of the camera; its velocity leads away from it.
+  Trajectory corrected(1);
+  corrected[0].stamp = {5.0, "5"};
+  corrected[0].T_world_camera.translation() << 10, 20, 30;
+  const std::vector<json> lines = lines_of(objects_jsonl(log, corrected));
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_TRUE(lines[0].at("objects").empty());
+  EXPECT_EQ(lines[1].at("objects")[1].at("p_world"), (json{10.0, 20.0, 32.0}));
+  EXPECT_EQ(lines[1].at("objects")[1].at("v_world"), (json{0.0, 0.0, 0.5}));
+}
+
+TEST(ObjectLog, WithoutAPoseNothingIsSaidOfThePlace) {
+  const std::vector<LoggedFrame> log = {log_frame({5.0, "5"}, pushed_chair())};
+  const json chair = lines_of(objects_jsonl(log, {})).at(0).at("objects").at(1);
+  EXPECT_TRUE(chair.at("p_world").is_null());
+  EXPECT_TRUE(chair.at("v_world").is_null());
+}
+
+TEST(ObjectLog, KeysStayInOrder) {
+  const std::string text = objects_jsonl(std::vector{log_frame({5.0, "5"}, pushed_chair())}, {});
+  EXPECT_EQ(text.substr(0, 62),
+            R"({"stamp":"5","objects":[{"track":4,"class":"person","category")");
+  EXPECT_EQ(text.back(), '\n');
+}
+
+TEST(ObjectLog, SumsUpEachTrack) {
+  FrameResult apart = pushed_chair();
+  apart.dynamics.judged.states[1].dynamic = false;
+  apart.dynamics.judged.states[1].reason = StateReason::kBoxesApart;
+  apart.dynamics.motions[1].motion = Motion::kStill;
+  const std::vector<LoggedFrame> log = {
+      log_frame({1, "1"}, pushed_chair()), log_frame({2, "2"}, apart), log_frame({3, "3"}, apart)};
+  const std::vector<ObjectSummary> summaries = summarize_objects(log);
+  ASSERT_EQ(summaries.size(), 2U);
+  EXPECT_EQ(summaries[0].track, 4U);
+  EXPECT_EQ(summaries[0].class_name, "person");
+  EXPECT_EQ(summaries[0].category, "dynamic");
+  EXPECT_EQ(summaries[0].frames, 3U);
+  EXPECT_EQ(summaries[0].filled, 3U);
+  EXPECT_EQ(summaries[0].dynamic, 3U);
+  EXPECT_EQ(summaries[1].track, 7U);
+  EXPECT_EQ(summaries[1].filled, 0U);
+  EXPECT_EQ(summaries[1].dynamic, 1U);
+  EXPECT_EQ(summaries[1].main_reason, "nobody near");
+  ASSERT_EQ(summaries[1].motions.size(), 2U);
+  EXPECT_EQ(summaries[1].motions[0].motion, "still");
+  EXPECT_EQ(summaries[1].motions[0].frames, 2U);
+  EXPECT_EQ(summaries[1].motions[1].motion, "moved by someone");
+  EXPECT_EQ(summaries[1].motions[1].frames, 1U);
+}
+
+}  // namespace
+}  // namespace stillmap

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tooling/pipeline/run_live.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "stillmap/core/error.hpp"
+#include "stillmap/sensor/live_camera.hpp"
+#include "tooling/pipeline/object_feed.hpp"
+
+namespace stillmap {
+namespace {
+
+std::unique_ptr<ObjectFeed> make_feed(const LiveInput& input) {
+  const Segmenter* segmenter = input.options.segmenter;
+  if (segmenter == nullptr) return nullptr;
+  const std::optional<LiveRecord>& record = input.options.live->record;
+  if (record) return std::make_unique<RecordedFeed>(*segmenter, *record);
+  return std::make_unique<NetworkFeed>(*segmenter, input.config.live.look_gap_frames);
+}
+
+/// What is done with each frame that was not dropped.
+class LiveLoop {
+ public:
+  LiveLoop(const LiveInput& input, System& system, RunLog& log)
+      : system_(system),
+        log_(log),
+        tracker_(input.config.dynamics.object_tracking(), FillRule::kCausal),
+        feed_(make_feed(input)) {}
+
+  /// Gives the milliseconds from the beginning to the pose.
+  double process(const FramePtr& frame);
+  [[nodiscard]] LiveResult take_result() { return std::move(result_); }
+
+ private:
+  [[nodiscard]] ObjectFeedStep look(const FramePtr& frame);
+
+  System& system_;
+  RunLog& log_;
+  ObjectTracker tracker_;
+  std::unique_ptr<ObjectFeed> feed_;
+  std::optional<FrameId> last_seen_;  // the last frame whose objects have come in
+  LiveResult result_;
+};
+
+ObjectFeedStep LiveLoop::look(const FramePtr& frame) {
+  LiveStep recorded{frame->id, {}};
+  ObjectFeedStep step;
+  if (feed_) step = feed_->step(frame, system_.needs_own_objects());
+  for (const SegmentedFrame& seen : step.arrived) recorded.objects_of.push_back(seen.frame->id);
+  if (!step.arrived.empty()) last_seen_ = step.arrived.back().frame->id;
+  result_.report.looked_at += step.arrived.size();
+  if (last_seen_) {
+    result_.report.objects_age_frames.push_back(
+        static_cast<double>(frame->id.value - last_seen_->value));
+  }
+  result_.record.push_back(std::move(recorded));
+  return step;
+}
+
+double LiveLoop::process(const FramePtr& frame) {
+  Stopwatch preparing;
+  ObjectFeedStep step = look(frame);
+  MaskOrigin origin = step.looking ? MaskOrigin::kAwaited : MaskOrigin::kCarried;
+  std::optional<FrameObjects> own;
+  std::vector<FrameObjects> of_earlier;
+  for (SegmentedFrame& seen : step.arrived) {
+    std::optional<FrameObjects> objects =
+        tracker_.push({seen.frame->id, std::move(seen.detections), seen.frame->depth});
+    STILLMAP_CHECK(objects.has_value());
+    if (seen.frame->id == frame->id) {
+      own = std::move(objects);
+    } else {
+      of_earlier.push_back(*std::move(objects));
+    }
+  }
+  if (own || !feed_) origin = MaskOrigin::kOwn;
+  FrameObjects objects =
+      own ? *std::move(own) : tracker_.carry_to(frame->id, frame->stamp, frame->depth);
+  const double prepared_ms = preparing.lap_ms();
+  const FrameResult result = system_.process(frame, std::move(objects), origin);
+  // After the pose, which somebody waits for.
+  Stopwatch taking;
+  for (FrameObjects& earlier : of_earlier) system_.take_objects(std::move(earlier));
+  if (!of_earlier.empty()) log_.add_stage_time("own objects", taking.lap_ms());
+  if (feed_) log_.add_stage_time("objects carried", prepared_ms);
+  log_.add(*frame, result);
+  return prepared_ms + result.pose_ms;
+}
+
+void run_by_clock(
+    const LiveInput& input, Clock& clock, LiveLoop& loop, RunLog& log, LiveReport& report) {
+  LiveCamera camera(FrameSource(input.sequence, input.frames, input.options.probe),
+                    input.sequence,
+                    input.options.live->speed,
+                    clock);
+  while (std::optional<CapturedFrame> captured = camera.next()) {
+    if (camera.dropped() > report.dropped) log.pass(camera.dropped() - report.dropped);
+    report.dropped = camera.dropped();
+    if (captured->source.frame == nullptr) {
+      log.skip(captured->source);
+      continue;
+    }
+    const double waited_ms = 1000 * (clock.now_s() - captured->arrival_s);
+    report.latency_ms.push_back(waited_ms + loop.process(captured->source.frame));
+  }
+}
+
+void run_recorded(const LiveInput& input, LiveLoop& loop, RunLog& log) {
+  std::vector<FrameId> frames;
+  for (const LiveStep& step : *input.options.live->record) frames.push_back(step.frame);
+  FrameSource source(input.sequence, frames, input.options.probe);
+  Prefetcher<SourcedFrame> read([&] { return source.next(); }, input.options.threads > 1 ? 4 : 0);
+  while (std::optional<SourcedFrame> next = read.next()) {
+    if (next->frame == nullptr)
+      throw Error("{} (it was read when the run was recorded)", next->damage);
+    log.add_stage_time("reading", next->reading_ms);
+    loop.process(next->frame);
+  }
+}
+
+}  // namespace
+
+LiveResult run_live(const LiveInput& input, System& system, RunLog& log) {
+  LiveLoop loop(input, system, log);
+  const LiveOptions& options = *input.options.live;
+  LiveReport report;
+  if (options.record) {
+    run_recorded(input, loop, log);
+    report.dropped = input.frames.size() - std::min(input.frames.size(), options.record->size());
+  } else {
+    STILLMAP_CHECK(options.clock != nullptr);
+    report.speed = options.speed;
+    run_by_clock(input, *options.clock, loop, log, report);
+  }
+  LiveResult result = loop.take_result();
+  report.looked_at = result.report.looked_at;
+  report.objects_age_frames = std::move(result.report.objects_age_frames);
+  result.report = std::move(report);
+  return result;
+}
+
+}  // namespace stillmap

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "stillmap/system/system.hpp"
+#include "tooling/pipeline/live_record.hpp"
+#include "tooling/pipeline/run_log.hpp"
+#include "tooling/pipeline/run_sequence.hpp"
+
+namespace stillmap {
+
+struct LiveInput {
+  const TumSequence& sequence;
+  const std::vector<FrameId>& frames;  ///< that the camera gives
+  const SystemConfig& config;
+  const RunOptions& options;  ///< with `live`
+};
+
+struct LiveResult {
+  LiveRecord record;
+  LiveReport report;
+};
+
+/// Runs the system as with a camera: frames come by the clock, or are those of a record; the
+/// network looks at some of them on a thread of its own, and what it has found is carried forward
+/// to the others until it has looked again.
+[[nodiscard]] LiveResult run_live(const LiveInput& input, System& system, RunLog& log);
+
+}  // namespace stillmap

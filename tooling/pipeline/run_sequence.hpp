@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "stillmap/perception/segmentation/segmenter.hpp"
+#include "stillmap/sensor/clock.hpp"
+#include "stillmap/sensor/tum_sequence.hpp"
+#include "stillmap/system/system.hpp"
+#include "tooling/pipeline/live_record.hpp"
+#include "tooling/report/run_report.hpp"
+
+namespace stillmap {
+
+/// Which frames of a sequence: [begin, end) in steps of `stride`.
+struct FrameSelection {
+  std::size_t begin = 0;
+  std::optional<std::size_t> end;  ///< nothing: to the last
+  std::size_t stride = 1;
+};
+
+/// Reads "A:B", "A:", ":B", with A < B, counted from 0, B left out. Throws Error for anything else.
+[[nodiscard]] FrameSelection parse_frames(const std::string& text);
+
+/// A run as with a camera: no frame waits for later ones, or for the network.
+struct LiveOptions {
+  double speed = 1;                  ///< of the clock that frames come by
+  std::optional<LiveRecord> record;  ///< instead of by the clock: what was decided then
+  Clock* clock = nullptr;            ///< not owned; needed without a record
+};
+
+struct RunOptions {
+  FrameSelection frames;
+  int threads = 2;
+  std::optional<LiveOptions> live;       ///< instead of as fast as it goes, with no frame left out
+  std::optional<Session> start;          ///< a saved session that the run goes on from
+  bool localize_only = false;            ///< the map stays as `start` has it
+  const Segmenter* segmenter = nullptr;  ///< what finds objects; none where null
+  /// Where there is one, the map is made once more with its poses.
+  std::optional<Trajectory> groundtruth;
+  std::function<void(std::size_t done, std::size_t total)> on_progress;  ///< may be empty
+  std::function<void(const std::string&)> on_warning;                    ///< may be empty
+  StageProbe probe = {};                                                 ///< of tests
+};
+
+struct SequenceRun {
+  RunResult result;
+  Session session;  ///< what can be saved; its settings are the caller's
+  /// All that the run itself knows; `map` is not set. What concerns ground truth, configuration and
+  /// version is the caller's.
+  RunReport report;
+  /// The map with the frames where ground truth has them, in the world of the run; frames without a
+  /// true pose add nothing to it. Nothing without ground truth, or with too little to align.
+  std::optional<PointCloud> map_at_true_poses;
+  LiveRecord live_record;  ///< of a live run: what the clock has decided
+  /// What objects.jsonl says; nullopt when nothing looked for objects or nothing is done about
+  /// them.
+  std::optional<std::string> objects_jsonl;
+};
+
+/// Runs the system over a sequence. A damaged image inside a long sequence costs its frame, with a
+/// warning; more than one frame in fifty, or any in a sequence below fifty frames, is an Error, and
+/// so is an image of the wrong kind or size. The result does not depend on the number of threads;
+/// that of a live run depends on the clock, by what its record says and nothing else.
+[[nodiscard]] SequenceRun run_sequence(const TumSequence& sequence,
+                                       const SystemConfig& config,
+                                       RunOptions options);
+
+}  // namespace stillmap

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "stillmap/core/point_cloud.hpp"
+#include "tooling/report/run_report.hpp"
+
+namespace stillmap {
+
+/// How features of one verdict are drawn, and what a legend calls them.
+struct VerdictStyle {
+  SampleVerdict verdict;
+  std::string_view name;
+  int radius_px = 0;  ///< of a ring
+  Rgb color{};
+};
+
+/// The styles of all verdicts; later ones are drawn over earlier ones.
+[[nodiscard]] std::span<const VerdictStyle> verdict_styles();
+
+/// Colours of the masks: what the network's has is outlined, the others are tinted.
+struct MaskStyle {
+  static constexpr Rgb kRaw = {255, 255, 255};
+  static constexpr Rgb kExtended = {235, 40, 30};
+  static constexpr Rgb kJumps = {255, 200, 0};
+};
+
+/// A copy of the frame's image, made smaller where it is wider than `max_width_px`, with its masks
+/// and features drawn, without its objects' boxes. Features outside the image and masks of another
+/// size are left out; an empty image stays empty.
+[[nodiscard]] ColorImage draw_frame(const SampleFrame& frame, int max_width_px);
+
+}  // namespace stillmap

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tooling/report/map_picture.hpp"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <opencv2/core.hpp>
+
+#include "stillmap/core/random.hpp"
+
+namespace stillmap {
+namespace {
+
+constexpr Rgb kRed = {200, 10, 20};
+constexpr Rgb kBlue = {10, 20, 200};
+
+View plain_view() {
+  View view;
+  view.width_px = 80;
+  view.height_px = 60;
+  view.scale = 50;
+  view.point_size_m = 0;
+  view.shade_depth_steps = false;
+  view.background = {255, 255, 255};
+  return view;
+}
+
+Rgb pixel(const ColorImage& image, int x, int y) {
+  const cv::Vec3b c = image.mat(y, x);
+  return {c[0], c[1], c[2]};
+}
+
+TEST(LookAt, axes_of_the_camera) {
+  const Eigen::Isometry3d T = look_at({1, 2, 3}, {1, 2, 8}, {0, 1, 0});
+  EXPECT_TRUE((T * Eigen::Vector3d(1, 2, 3)).isZero(1e-12));
+  EXPECT_TRUE((T * Eigen::Vector3d(2, 2, 3)).isApprox(Eigen::Vector3d(1, 0, 0)));
+  EXPECT_TRUE((T * Eigen::Vector3d(1, 3, 3)).isApprox(Eigen::Vector3d(0, 1, 0)));
+  EXPECT_TRUE((T * Eigen::Vector3d(1, 2, 5)).isApprox(Eigen::Vector3d(0, 0, 2)));
+  const Eigen::Isometry3d from_above = look_at({0, -5, 0}, {0, 0, 0}, {0, 0, -1});
+  EXPECT_TRUE((from_above * Eigen::Vector3d(1, 0, 2)).isApprox(Eigen::Vector3d(1, -2, 5)));
+  EXPECT_NEAR(from_above.linear().determinant(), 1, 1e-12);
+}
+
+TEST(RenderPoints, points_fall_where_they_project_by_hand) {
+  PointCloud cloud;
+  cloud.positions = {{0.2F, -0.1F, 2.0F}, {-0.59F, 0.41F, 1.0F}};
+  cloud.colors = {kRed, kBlue};
+  const ColorImage image = render_points(cloud, plain_view());
+  EXPECT_EQ(pixel(image, 45, 27), kRed);   // 40 + 50 * 0.2 / 2 = 45, 30 - 50 * 0.1 / 2 = 27.5
+  EXPECT_EQ(pixel(image, 10, 50), kBlue);  // 40 - 29.5, 30 + 20.5
+  EXPECT_EQ(pixel(image, 46, 27), (Rgb{255, 255, 255}));
+}
+
+TEST(RenderPoints, orthographic_points_do_not_shrink_with_distance) {
+  PointCloud cloud;
+  cloud.positions = {{0.25F, 0.25F, 2.0F}, {-0.35F, 0.25F, 70.0F}};
+  cloud.colors = {kRed, kBlue};
+  View view = plain_view();
+  view.orthographic = true;
+  view.point_size_m = 0.06;  // 3 pixels
+  const ColorImage image = render_points(cloud, view);
+  for (int y = 41; y <= 43; ++y) {  // about 42.5, whose pixel is 42
+    for (int x = 51; x <= 53; ++x) EXPECT_EQ(pixel(image, x, y), kRed);
+    for (int x = 21; x <= 23; ++x) EXPECT_EQ(pixel(image, x, y), kBlue);
+  }
+  EXPECT_EQ(pixel(image, 50, 42), (Rgb{255, 255, 255}));
+  EXPECT_EQ(pixel(image, 54, 42), (Rgb{255, 255, 255}));
+}
+
+// The nearest point of each pixel, straight from the definition, one pixel at a time.
+TEST(RenderPoints, agrees_with_brute_force) {
+  std::mt19937 rng(7);
+  const auto uniform = [&rng](double low, double high) {
+    return low + (high - low) * draw_index(rng, 1U << 30U) / (1U << 30U);
+  };
+  PointCloud cloud;
+  for (int i = 0; i < 3000; ++i) {
+    cloud.positions.emplace_back(uniform(-2, 2), uniform(-2, 2), uniform(-1, 4));
+    cloud.colors.push_back({static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(i >> 8), 7});
+  }
+  View view = plain_view();
+  view.T_camera_world = look_at({0.3, -0.5, -1}, {0, 0, 2}, {0.1, 1, 0});
+  const ColorImage image = render_points(cloud, view);
+  for (int y = 0; y < view.height_px; ++y) {
+    for (int x = 0; x < view.width_px; ++x) {
+      Rgb expected = view.background;
+      double nearest = std::numeric_limits<double>::infinity();
+      for (std::size_t i = 0; i < cloud.size(); ++i) {
+        const Eigen::Vector3d p = view.T_camera_world * cloud.positions[i].cast<double>();
+        if (p.z() < view.near_m || p.z() >= nearest) continue;
+        const bool here =
+            std::floor(50 * p.x() / p.z() + 40) == x && std::floor(50 * p.y() / p.z() + 30) == y;
+        if (!here) continue;
+        nearest = p.z();
+        expected = cloud.colors[i];
+      }
+      ASSERT_EQ(pixel(image, x, y), expected) << x << ' ' << y;
+    }
+  }
+}
+
+TEST(RenderPoints, of_equally_near_points_the_first_wins_and_hostile_ones_are_left_out) {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  PointCloud cloud;
+  cloud.positions = {{0, 0, 1}, {0, 0, 1}, {kNan, 0, 1}, {0, 0, 0}, {0, 0, -1}, {1e30F, 0, 1e-1F}};
+  cloud.colors = {kRed, kBlue, kBlue, kBlue, kBlue, kBlue};
+  const ColorImage image = render_points(cloud, plain_view());
+  EXPECT_EQ(pixel(image, 40, 30), kRed);
+  EXPECT_EQ(cv::countNonZero(image.mat.reshape(1) != 255), 3);  // the channels of that one pixel
+}
+
+TEST(RenderPoints, shading_darkens_what_lies_just_behind_an_edge_and_nothing_else) {
+  PointCloud cloud;
+  for (int y = -20; y <= 20; ++y) {
+    for (int x = -20; x <= 20; ++x) {
+      cloud.positions.emplace_back(0.02F * x, 0.02F * y, x < 0 ? 1.0F : 3.0F);
+      cloud.colors.push_back({200, 200, 200});
+    }
+  }
+  View view = plain_view();
+  view.orthographic = true;
+  view.shade_depth_steps = true;
+  const ColorImage image = render_points(cloud, view);
+  EXPECT_EQ(pixel(image, 30, 30), (Rgb{200, 200, 200}));  // in front
+  EXPECT_EQ(pixel(image, 50, 30), (Rgb{200, 200, 200}));  // behind, away from the edge
+  EXPECT_LT(pixel(image, 40, 30)[0], 170);                // behind, at the edge
+}
+
+TEST(RenderPoints, of_an_empty_cloud_is_background) {
+  const ColorImage image = render_points(PointCloud{}, plain_view());
+  EXPECT_EQ(image.mat.size(), cv::Size(80, 60));
+  EXPECT_EQ(cv::countNonZero(image.mat.reshape(1) != 255), 0);
+}
+
+TEST(DrawPath, goes_through_its_points_on_a_copy) {
+  const ColorImage blank = render_points(PointCloud{}, plain_view());
+  const std::vector<Eigen::Vector3d> path = {{-0.5, 0, 1}, {0.5, 0, 1}, {0, 0, -1}, {1e9, 0, 1}};
+  const ColorImage drawn = draw_path(blank, plain_view(), path, kRed);
+  EXPECT_EQ(pixel(drawn, 20, 30), kRed);
+  EXPECT_EQ(pixel(drawn, 60, 30), kRed);
+  EXPECT_EQ(pixel(drawn, 40, 50), (Rgb{255, 255, 255}));
+  EXPECT_EQ(pixel(blank, 20, 30), (Rgb{255, 255, 255}));
+}
+
+}  // namespace
+}  // namespace stillmap

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include <fmt/core.h>
+#include <opencv2/core.hpp>
+
+#include "tooling/report/box_overlay.hpp"
+#include "tooling/report/display_text.hpp"
+#include "tooling/report/frame_picture.hpp"
+#include "tooling/report/page_sections.hpp"
+#include "tooling/report/page_text.hpp"
+#include "tooling/report/picture_html.hpp"
+
+namespace stillmap {
+namespace {
+
+std::size_t count_of(const SampleFrame& frame, SampleVerdict verdict) {
+  return static_cast<std::size_t>(
+      std::ranges::count(frame.features, verdict, &SampleFeature::verdict));
+}
+
+/// Best first, as the legend and captions have them.
+std::vector<VerdictStyle> shown_fates(const RunReport& report) {
+  std::vector<VerdictStyle> shown;
+  for (const VerdictStyle& style : verdict_styles()) {
+    const auto has = [&](const SampleFrame& frame) { return count_of(frame, style.verdict) > 0; };
+    if (std::ranges::any_of(report.samples, has)) shown.push_back(style);
+  }
+  std::ranges::reverse(shown);
+  return shown;
+}
+
+std::string css_color(Rgb color) {
+  return fmt::format("#{:02x}{:02x}{:02x}", color[0], color[1], color[2]);
+}
+
+bool any_pixel(const RunReport& report, cv::Mat1b SampleFrame::*mask) {
+  return std::ranges::any_of(report.samples, [mask](const SampleFrame& frame) {
+    return !(frame.*mask).empty() && cv::countNonZero(frame.*mask) > 0;
+  });
+}
+
+std::string area_key(const char* kind, Rgb color, const char* name) {
+  return fmt::format("<span class=\"item\"><span class=\"{}\" style=\"--key:{}\"></span>{}</span>",
+                     kind,
+                     css_color(color),
+                     name);
+}
+
+std::string box_key(const char* kind, const char* name) {
+  return fmt::format("<span class=\"item\"><span class=\"box {}\"></span>{}</span>", kind, name);
+}
+
+/// What is drawn in any of the frames, and nothing else.
+std::string legend_html(const RunReport& report) {
+  std::string items;
+  for (const VerdictStyle& style : shown_fates(report)) {
+    items += fmt::format(
+        "<span class=\"item\"><span class=\"ring\" style=\"border-color:{}\"></span>{}</span>",
+        css_color(style.color),
+        style.name);
+  }
+  const auto any_object = [&](const auto& wanted) {
+    return std::ranges::any_of(report.samples, [&](const SampleFrame& frame) {
+      return std::ranges::any_of(frame.objects, wanted);
+    });
+  };
+  if (any_object([](const SampleObject& o) { return o.dynamic; }))
+    items += box_key("dyn", "dynamic object");
+  if (any_object([](const SampleObject& o) { return !o.dynamic; }))
+    items += box_key("sta", "static object");
+  if (any_object([](const SampleObject& o) { return o.filled; }))
+    items += box_key("filled", "missed by the network, filled in");
+  if (any_pixel(report, &SampleFrame::raw_mask))
+    items += area_key("outline", MaskStyle::kRaw, "the network's mask");
+  if (any_pixel(report, &SampleFrame::extended_mask))
+    items += area_key("area", MaskStyle::kExtended, "extended mask");
+  if (any_pixel(report, &SampleFrame::jumps))
+    items += area_key("area", MaskStyle::kJumps, "sudden change of depth");
+  return items.empty() ? "" : "<p class=\"note legend\">" + items + "</p>";
+}
+
+std::string caption(const SampleFrame& frame,
+                    const std::vector<VerdictStyle>& verdicts,
+                    double start) {
+  std::string text = fmt::format("{:.2f} s", frame.stamp.seconds - start);
+  const char* separator = ": ";
+  for (const VerdictStyle& style : verdicts) {
+    text +=
+        fmt::format("{}{} {}", separator, count_text(count_of(frame, style.verdict)), style.name);
+    separator = ", ";
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string samples_html(const RunReport& report) {
+  constexpr int kWidth_px = 640;
+  const std::vector<VerdictStyle> verdicts = shown_fates(report);
+  const double start = first_stamp_s(report);
+  std::string figures;
+  bool wide = false;
+  for (const SampleFrame& frame : report.samples) {
+    const ColorImage picture = draw_frame(frame, kWidth_px);
+    if (picture.mat.empty()) continue;
+    const std::string boxes = box_overlay_svg(frame);
+    wide = wide || !boxes.empty();
+    figures +=
+        figure_html(picture, "Frame " + frame.stamp.text, caption(frame, verdicts, start), boxes);
+  }
+  if (figures.empty()) return "<p>No sample frames were kept.</p>";
+  return fmt::format(
+      "{}<div class=\"samples{}\">{}</div>", legend_html(report), wide ? " wide" : "", figures);
+}
+
+}  // namespace stillmap
