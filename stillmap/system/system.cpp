@@ -60,28 +60,29 @@ void System::load(Session session) {
   if (!submaps.empty()) next_submap_ = SubmapId(submaps.back().value + 1);
 }
 
-PreparedFrame System::prepare(const RgbdFrame& frame, const FrameObjects& objects) const {
+PreparedFrame System::prepare(FramePtr frame, FrameObjects objects) const {
   begin_work(probe_, Stage::kPreparation);
   Stopwatch stage;
   PreparedFrame prepared;
-  prepared.corners = extractor_.corners(frame.gray);
+  prepared.frame = std::move(frame);
+  prepared.objects = std::move(objects);
+  prepared.corners = extractor_.corners(prepared.frame->gray);
   prepared.corners_ms = stage.lap_ms();
-  if (dynamics_.enabled()) prepared.objects = dynamics_.measure(frame, objects);
+  if (dynamics_.enabled()) {
+    prepared.measured = dynamics_.measure(*prepared.frame, prepared.objects);
+  }
   prepared.objects_ms = stage.lap_ms();
   return prepared;
 }
 
 FrameResult System::process(const FramePtr& frame, FrameObjects objects, MaskOrigin origin) {
-  PreparedFrame prepared = prepare(*frame, objects);
-  return process(frame, std::move(objects), std::move(prepared), origin);
+  return process(prepare(frame, std::move(objects)), origin);
 }
 
-FrameResult System::process(const FramePtr& frame,
-                            FrameObjects objects,
-                            PreparedFrame prepared,
-                            MaskOrigin origin) {
+FrameResult System::process(PreparedFrame prepared, MaskOrigin origin) {
   begin_work(probe_, Stage::kTracking);
   Stopwatch total, stage;
+  const FramePtr frame = std::move(prepared.frame);
   FrameResult result;
   update_map(frame_number_);
   result.stages.push_back({"mapping", stage.lap_ms()});
@@ -90,7 +91,8 @@ FrameResult System::process(const FramePtr& frame,
       tracker_.expected_pose(frame->stamp.seconds, session_.map);
   if (expected) expected = T_odometry_world_ * *expected;
   if (dynamics_.enabled()) {
-    result.dynamics = dynamics_.judge(*frame, std::move(objects), prepared.objects, expected);
+    result.dynamics =
+        dynamics_.judge(*frame, std::move(prepared.objects), prepared.measured, expected);
     result.stages.push_back({"dynamics", prepared.objects_ms + stage.lap_ms()});
   }
   Features features =

@@ -63,15 +63,12 @@ class System {
   void load(Session session);
 
   /// The part of process() that needs nothing of other frames. May be called on any thread while
-  /// others are being processed. `objects`: what a network has found in it, if there is one.
-  [[nodiscard]] PreparedFrame prepare(const RgbdFrame& frame, const FrameObjects& objects) const;
+  /// others are being processed. `objects`: those of this frame, where something looks for objects.
+  [[nodiscard]] PreparedFrame prepare(FramePtr frame, FrameObjects objects) const;
 
-  /// Tracks a frame. Frames have the camera's size. `prepared`: what prepare() says of the same.
-  /// Only with objects of its own may it become a key frame, begin a map or be seen in the cloud.
-  FrameResult process(const FramePtr& frame,
-                      FrameObjects objects,
-                      PreparedFrame prepared,
-                      MaskOrigin origin = MaskOrigin::kOwn);
+  /// Tracks a frame of the camera's size, as prepare() of this system gave it. Only with objects of
+  /// its own may it become a key frame, begin a map or be seen in the cloud.
+  FrameResult process(PreparedFrame prepared, MaskOrigin origin = MaskOrigin::kOwn);
 
   /// Both at once.
   FrameResult process(const FramePtr& frame,

@@ -323,13 +323,12 @@ TEST(System, GivesTheSameBitsForFramesPreparedAheadOnAnotherThread) {
       [&]() -> std::optional<PreparedFrame> {
         if (next == crowded.frames.size()) return std::nullopt;
         const std::size_t i = next++;
-        return hurried.prepare(*crowded.frames[i], crowded.objects[i]);
+        return hurried.prepare(crowded.frames[i], crowded.objects[i]);
       },
       4);
   for (std::size_t i = 0; i < crowded.frames.size(); ++i) {
     const FrameResult a = plain.process(crowded.frames[i], crowded.objects[i]);
-    const FrameResult b =
-        hurried.process(crowded.frames[i], crowded.objects[i], ahead.next().value());
+    const FrameResult b = hurried.process(ahead.next().value());
     EXPECT_EQ(a.tracked.T_world_camera.matrix(), b.tracked.T_world_camera.matrix()) << i;
     EXPECT_EQ(a.tracked.features->descriptors, b.tracked.features->descriptors) << i;
     EXPECT_EQ(cv::norm(a.dynamics.excluded, b.dynamics.excluded, cv::NORM_INF), 0.0) << i;

@@ -37,11 +37,10 @@ std::optional<PreparedFrames> FramePreparation::prepare() {
   return prepared;
 }
 
-std::vector<ReadyFrame> FramePreparation::prepare(std::vector<FrameWithObjects> frames) const {
-  std::vector<ReadyFrame> ready;
+std::vector<PreparedFrame> FramePreparation::prepare(std::vector<FrameWithObjects> frames) const {
+  std::vector<PreparedFrame> ready;
   for (FrameWithObjects& frame : frames) {
-    PreparedFrame prepared = system_.prepare(*frame.frame, frame.objects);
-    ready.push_back({std::move(frame.frame), std::move(frame.objects), std::move(prepared)});
+    ready.push_back(system_.prepare(std::move(frame.frame), std::move(frame.objects)));
   }
   return ready;
 }

@@ -11,19 +11,12 @@
 
 namespace stillmap {
 
-/// A frame with all that the system can be told of it.
-struct ReadyFrame {
-  FramePtr frame;
-  FrameObjects objects;
-  PreparedFrame prepared;
-};
-
 /// What became of the next frame of a sequence, and the frames that are ready for the system now:
 /// others than that, while objects wait for later frames.
 struct PreparedFrames {
   SourcedFrame source;                    ///< without its frame; at the end, empty
   std::optional<double> segmentation_ms;  ///< where objects were looked for
-  std::vector<ReadyFrame> ready;
+  std::vector<PreparedFrame> ready;
   bool at_end = false;  ///< nothing was read: these are the last
 };
 
@@ -40,7 +33,7 @@ class FramePreparation {
 
  private:
   [[nodiscard]] std::optional<PreparedFrames> prepare();
-  [[nodiscard]] std::vector<ReadyFrame> prepare(std::vector<FrameWithObjects> frames) const;
+  [[nodiscard]] std::vector<PreparedFrame> prepare(std::vector<FrameWithObjects> frames) const;
 
   static constexpr std::size_t kAhead = 4;
   FrameSource source_;

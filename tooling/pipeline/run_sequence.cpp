@@ -33,9 +33,9 @@ void run_through(System& system, RunLog& log, FramePreparation& prepared) {
     if (!next->at_end) log.add_stage_time("reading", next->source.reading_ms);
     if (!next->source.damage.empty()) log.skip(next->source);
     if (next->segmentation_ms) log.add_stage_time("segmentation", *next->segmentation_ms);
-    for (ReadyFrame& ready : next->ready) {
-      log.add(*ready.frame,
-              system.process(ready.frame, std::move(ready.objects), std::move(ready.prepared)));
+    for (PreparedFrame& ready : next->ready) {
+      const FramePtr frame = ready.frame;
+      log.add(*frame, system.process(std::move(ready)));
     }
   }
 }
