@@ -14,15 +14,15 @@ namespace stillmap {
 
 /// A bounded queue between one producing and one consuming thread, with an explicit end.
 ///
-/// The producer ends the stream with close(), or with fail() to hand its exception on. The consumer
-/// may stop early with cancel(), after which push() returns false. Elements arrive in the order
-/// they were pushed. Nothing polls and nothing is dropped.
+/// The producer ends the queue with close(), or with fail() to pass on its exception. The consumer
+/// may stop early with cancel(), after which push() returns false. Elements arrive in the order in
+/// which they were pushed. Threads wait without polling; only cancel() drops elements.
 template <class T>
 class Channel {
  public:
   explicit Channel(std::size_t capacity) : capacity_(capacity) { STILLMAP_CHECK(capacity > 0); }
 
-  /// Waits for room. False when the consumer has cancelled: the producer should stop.
+  /// Waits for room. Returns false when the consumer has cancelled: the producer should stop.
   [[nodiscard]] bool push(T value) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return queue_.size() < capacity_ || cancelled_; });
@@ -32,8 +32,8 @@ class Channel {
     return true;
   }
 
-  /// Waits for an element; nothing at the end of the stream. Throws what the producer failed with,
-  /// after the elements that it pushed before.
+  /// Waits for an element and returns it; returns nothing at the end. If the producer has failed,
+  /// throws its exception once the elements pushed before are taken.
   [[nodiscard]] std::optional<T> pop() {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return !queue_.empty() || closed_; });
@@ -50,7 +50,7 @@ class Channel {
   void close() { finish(nullptr); }
   void fail(std::exception_ptr failure) { finish(std::move(failure)); }
 
-  /// What is still in the queue is dropped.
+  /// Drops the elements still in the queue.
   void cancel() {
     const std::lock_guard lock(mutex_);
     cancelled_ = true;

@@ -14,19 +14,19 @@ namespace stillmap {
 
 /// Jobs and the frames at which their results are due.
 ///
-/// With a worker a job runs meanwhile on its thread, without one at its submission; either way its
-/// result is taken at the frame that was fixed beforehand, so that both give the same run. A slow
-/// job makes collect_due() wait, never differ. What a job throws is thrown by the call that
-/// collects it.
+/// With a worker, a job runs on the worker's thread; without one it runs inside submit(). Either
+/// way its result is collected at the frame that was fixed at its submission, so that both give the
+/// same run. A slow job makes collect_due() wait but does not change its results. An exception that
+/// a job throws is thrown again by the collect_due() that collects the job.
 template <class Result>
 class JobLedger {
  public:
-  /// `worker` may be null: jobs then run inline. It must outlive the ledger. Each job begins with
-  /// `before_job`, if there is one.
+  /// Without a `worker` (null) jobs run inline. The worker must outlive the ledger. `before_job`,
+  /// unless empty, is called at the beginning of each job.
   explicit JobLedger(Worker* worker, std::function<void()> before_job = {})
       : worker_(worker), before_job_(std::move(before_job)) {}
 
-  /// Frames are counted over those processed; due frames never decrease from job to job.
+  /// `due_frame` counts processed frames and must not be less than that of the job before.
   void submit(std::int64_t due_frame, std::function<Result()> job) {
     auto task = std::make_shared<std::packaged_task<Result()>>(
         [before = before_job_, job = std::move(job)] {
@@ -41,12 +41,12 @@ class JobLedger {
     }
   }
 
-  /// Results due at `frame` or before, in the order of submission.
+  /// The results due at `frame` or before, in the order of submission. Waits for them.
   [[nodiscard]] std::vector<Result> collect_due(std::int64_t frame) {
     std::vector<Result> results;
     while (!jobs_.empty() && jobs_.front().due_frame <= frame) {
       std::future<Result> result = std::move(jobs_.front().result);
-      jobs_.pop_front();  // first, for get() may throw
+      jobs_.pop_front();  // before get(), which may throw
       results.push_back(result.get());
     }
     return results;

@@ -14,9 +14,10 @@
 
 namespace stillmap {
 
-/// Calls consume(i, produce(i)) for i from 0 to count - 1: consume on this thread, in order;
-/// produce on `threads` others, at most three results ahead each. `produce` must not depend on the
-/// order of its calls. Passes on what either throws, after all threads have ended.
+/// Calls consume(i, produce(i)) for i from 0 to count - 1: `consume` on the calling thread and in
+/// order, `produce` on `threads` other threads, each at most three results ahead. The results of
+/// `produce` must not depend on the order of its calls. An exception of either is thrown again
+/// after all threads have ended.
 template <class Produce, class Consume>
 void produce_in_parallel(std::size_t count,
                          std::size_t threads,
@@ -24,7 +25,7 @@ void produce_in_parallel(std::size_t count,
                          const Consume& consume) {
   STILLMAP_CHECK(threads > 0);
   using Item = std::invoke_result_t<const Produce&, std::size_t>;
-  std::deque<Channel<Item>> channels;  // one a thread; outlives them
+  std::deque<Channel<Item>> channels;  // one per thread; outlives the threads
   for (std::size_t k = 0; k < threads; ++k) channels.emplace_back(2);
   std::vector<std::jthread> workers;
   for (std::size_t k = 0; k < threads; ++k) {
@@ -47,8 +48,8 @@ void produce_in_parallel(std::size_t count,
   }
 }
 
-/// Calls work(i) for i from 0 to count - 1, each on a thread of its own, the first on this one.
-/// Passes on what the first of them throws, in their order, after all have ended.
+/// Calls work(i) for i from 0 to count - 1: work(0) on the calling thread, each other on a thread
+/// of its own. After all have ended, throws the exception of the least i whose call threw, if any.
 template <class Work>
 void in_parallel(std::size_t count, const Work& work) {
   std::vector<std::exception_ptr> failures(count);

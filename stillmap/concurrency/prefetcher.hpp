@@ -12,13 +12,14 @@
 
 namespace stillmap {
 
-/// What a function gives, call by call, until it gives nothing; called ahead on a thread of its own
-/// or only when asked. Either way the items are the same and come in the same order.
+/// Gives the items that a function returns, call by call, until it returns nothing. The function is
+/// called ahead on a thread of its own, or only on demand. Both give the same items in the same
+/// order.
 template <class Item>
 class Prefetcher {
  public:
-  /// At most `ahead` items wait, and one more is being made; with 0 there is no thread. What
-  /// `produce` refers to outlives this.
+  /// At most `ahead` items wait while one more is made. With 0 there is no thread: `produce` is
+  /// called by next(). Everything that `produce` refers to must outlive the prefetcher.
   Prefetcher(std::function<std::optional<Item>()> produce, std::size_t ahead)
       : produce_(std::move(produce)), channel_(ahead > 0 ? ahead : 1) {
     if (ahead > 0) producer_ = std::jthread([this] { run(); });
@@ -27,7 +28,8 @@ class Prefetcher {
   Prefetcher(const Prefetcher&) = delete;
   Prefetcher& operator=(const Prefetcher&) = delete;
 
-  /// The next item; nothing at the end. Throws what `produce` threw, after the items before.
+  /// The next item, or nothing at the end. An exception of `produce` is thrown again once the items
+  /// made before it are taken.
   [[nodiscard]] std::optional<Item> next() {
     return producer_.joinable() ? channel_.pop() : produce_();
   }
@@ -39,14 +41,14 @@ class Prefetcher {
         if (!channel_.push(std::move(*item))) return;
       }
       channel_.close();
-    } catch (...) {  // the consumer's pop() throws it
+    } catch (...) {  // thrown again by the consumer's pop()
       channel_.fail(std::current_exception());
     }
   }
 
   std::function<std::optional<Item>()> produce_;
   Channel<Item> channel_;
-  std::jthread producer_;  // last: it runs while the rest lives
+  std::jthread producer_;  // last member: it uses the others until it is joined
 };
 
 }  // namespace stillmap

@@ -5,18 +5,19 @@
 
 namespace stillmap {
 
-/// Parts of a run that may work beside each other.
+/// The stages of a run that may work at the same time.
 enum class Stage { kReading, kPreparation, kTracking, kMapping, kViews, kAdjustment };
 
-/// Called whenever a stage begins a piece of work, on the thread that does it: so tests make stages
-/// slow, or fail with what it throws. Empty otherwise. Called by several threads at once.
+/// A function called at the beginning of each piece of a stage's work, on the thread that does the
+/// work. Tests use it to slow a stage down or, by throwing, to make it fail; otherwise it is empty.
+/// Several threads may call it at the same time.
 using StageProbe = std::function<void(Stage)>;
 
 inline void begin_work(const StageProbe& probe, Stage stage) {
   if (probe) probe(stage);
 }
 
-/// How a stage does its work.
+/// Where and how observed a stage does its work.
 struct StageOptions {
   bool threaded = false;  ///< on a thread of its own
   StageProbe probe = {};

@@ -11,14 +11,14 @@
 
 namespace stillmap {
 
-/// One thread that runs tasks in the order they are posted. Destruction drops those not begun and
-/// waits for the one that runs. Tasks must not throw (JobLedger's hand what they throw to a
-/// future).
+/// One thread that runs tasks in the order in which they are posted. The destructor drops the tasks
+/// that have not begun and waits for the one that runs. Tasks must not throw; those of JobLedger
+/// put their exceptions into a future.
 class Worker {
  public:
   enum class Priority {
     kNormal,
-    kLow,  ///< others of this process that want a processor get it first
+    kLow,  ///< the other threads of this process get a processor first
   };
   explicit Worker(Priority priority = Priority::kNormal)
       : thread_([this, priority] {
@@ -32,11 +32,11 @@ class Worker {
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
-  /// Waits when many tasks are pending.
+  /// Waits while kMaxPending tasks are pending.
   void post(std::function<void()> task) { (void)tasks_.push(std::move(task)); }
 
  private:
-  // Only how fast things go depends on it; where it is refused they go as they would.
+  // Affects speed only. If the system refuses, the thread keeps its normal priority.
   static void give_way() {
     constexpr int kNiceness = 10;
     (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNiceness);
@@ -48,7 +48,7 @@ class Worker {
 
   static constexpr std::size_t kMaxPending = 8;
   Channel<std::function<void()>> tasks_{kMaxPending};
-  std::jthread thread_;  // last: it runs while the channel lives
+  std::jthread thread_;  // last member: it uses the channel until it is joined
 };
 
 }  // namespace stillmap

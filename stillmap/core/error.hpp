@@ -8,9 +8,9 @@
 
 namespace stillmap {
 
-/// What is wrong with data from outside (a file, a key, an argument), in one line that names the
-/// file or key, says what was expected and what to do. The command line prints it and exits with 2.
-/// An expected outcome (tracking lost, no match) is never an Error but a value.
+/// An exception for wrong data from outside (a file, a key, an argument). Its text is one line that
+/// names the file or key, says what was expected and what to do. The program prints it and exits
+/// with 2. An expected outcome (tracking lost, no match) is a value, never an Error.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -20,7 +20,8 @@ class Error : public std::runtime_error {
       : std::runtime_error(fmt::format(format, std::forward<Args>(args)...)) {}
 };
 
-/// A mistake of our own: thrown by STILLMAP_CHECK, exit code 1.
+/// An exception for a programming mistake in this library. Thrown by STILLMAP_CHECK; the program
+/// exits with 1.
 class InternalError : public std::logic_error {
  public:
   using std::logic_error::logic_error;
@@ -28,8 +29,8 @@ class InternalError : public std::logic_error {
 
 }  // namespace stillmap
 
-/// Throws InternalError with the expression and its place when `condition` does not hold.
-/// For invariants of our own code only; bad input is an Error.
+/// Throws InternalError with the expression, file and line when `condition` does not hold.
+/// For invariants of this library only; wrong data from outside is an Error.
 #define STILLMAP_CHECK(condition)                                                   \
   do {                                                                              \
     if (!(condition))                                                               \

@@ -9,7 +9,8 @@
 
 namespace stillmap {
 
-/// A strong integer id: ids of different things do not mix. Default-constructed ids are invalid.
+/// A strong integer id: ids with different tags do not convert into each other. A default
+/// constructed id is invalid.
 template <class Tag>
 struct Id {
   static constexpr std::uint32_t kInvalidValue = std::numeric_limits<std::uint32_t>::max();
@@ -28,7 +29,8 @@ struct Id {
 using FrameId = Id<struct FrameTag>;
 using KeyframeId = Id<struct KeyframeTag>;
 using LandmarkId = Id<struct LandmarkTag>;
-/// A coordinate frame that key frames share. Tracking that was lost for long begins another.
+/// The coordinate frame shared by key frames that tracking, loops or relocalisation tie together.
+/// Tracking that stays lost begins another submap.
 using SubmapId = Id<struct SubmapTag>;
 
 }  // namespace stillmap

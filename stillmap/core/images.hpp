@@ -5,9 +5,9 @@
 
 namespace stillmap {
 
-// OpenCV converts silently between image types and lets a copy of a const cv::Mat change the
-// original's pixels. So images travel in these one-member structs, which do not convert into each
-// other, and whoever is given one never writes to it.
+// OpenCV converts silently between image types, and a copy of a const cv::Mat can change the
+// original's pixels. Images therefore travel in these one-member structs, which do not convert into
+// each other. A function never writes to an image that it was given.
 
 /// Colour, 8 bits a channel, in the order red, green, blue.
 struct ColorImage {

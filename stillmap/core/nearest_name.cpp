@@ -12,7 +12,7 @@
 namespace stillmap {
 namespace {
 
-// Levenshtein's distance, one row at a time.
+// Levenshtein distance, computed one row at a time.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});

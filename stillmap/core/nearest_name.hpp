@@ -7,8 +7,9 @@
 
 namespace stillmap {
 
-/// The known name that is closest to a misspelt one: "did you mean 'x'?" when one is close (edit
-/// distance at most a third of its length, rounded), else "known: a, b, c". `known` is not empty.
+/// A hint for a misspelt name: "did you mean 'x'?" with the closest known name when its edit
+/// distance is at most a third of its length, rounded; else "known: a, b, c". `known` must not be
+/// empty.
 [[nodiscard]] std::string name_hint(std::string_view misspelt, std::span<const std::string> known);
 
 }  // namespace stillmap

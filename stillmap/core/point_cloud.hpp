@@ -13,18 +13,18 @@ namespace stillmap {
 using Rgb = std::array<std::uint8_t, 3>;
 
 /// Points with their attributes, as parallel arrays. `positions` and `colors` have equal length;
-/// `labels` and `normals` are either empty or of that length too.
+/// `labels` and `normals` are empty or have that length too.
 struct PointCloud {
   std::vector<Eigen::Vector3f> positions;  ///< metres
   std::vector<Rgb> colors;
-  std::vector<std::uint8_t> labels;      ///< class of the surface, 0 = none
+  std::vector<std::uint8_t> labels;      ///< class of the surface (COCO, counted from 1), 0 = none
   std::vector<Eigen::Vector3f> normals;  ///< unit length
 
   [[nodiscard]] std::size_t size() const { return positions.size(); }
   [[nodiscard]] bool empty() const { return positions.empty(); }
 };
 
-/// The cloud in other coordinates.
+/// The cloud in coordinate frame `target`: positions are transformed, normals rotated.
 [[nodiscard]] inline PointCloud moved(PointCloud cloud, const Eigen::Isometry3d& T_target_cloud) {
   for (Eigen::Vector3f& p : cloud.positions) p = (T_target_cloud * p.cast<double>()).cast<float>();
   const Eigen::Matrix3f R_target_cloud = T_target_cloud.linear().cast<float>();

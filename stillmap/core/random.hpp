@@ -8,8 +8,8 @@
 
 namespace stillmap {
 
-/// What a random generator is for; a generator serves one purpose in one frame, so that adding a
-/// draw in one place changes no other.
+/// The purpose of a random generator. Each generator serves one purpose in one frame, so that an
+/// additional draw for one purpose changes the draws of no other.
 enum class RandomPurpose : std::uint32_t {
   kAbsolutePose = 1,
   kEpipolarGeometry = 2,
@@ -17,7 +17,7 @@ enum class RandomPurpose : std::uint32_t {
   kFloorPlane = 4
 };
 
-/// A fresh generator that depends on the run's seed, the frame and the purpose alone.
+/// A new generator whose state depends only on the run's seed, the frame and the purpose.
 [[nodiscard]] inline std::mt19937 rng_for(std::uint32_t seed,
                                           FrameId frame,
                                           RandomPurpose purpose) {
@@ -25,7 +25,8 @@ enum class RandomPurpose : std::uint32_t {
   return std::mt19937(sequence);
 }
 
-/// Uniform in [0, n), the same on every standard library (std::uniform_int_distribution is not).
+/// A uniform draw from [0, n). Unlike std::uniform_int_distribution it gives the same values with
+/// every standard library.
 [[nodiscard]] inline std::uint32_t draw_index(std::mt19937& rng, std::uint32_t n) {
   return static_cast<std::uint32_t>((static_cast<std::uint64_t>(rng()) * n) >> 32U);
 }

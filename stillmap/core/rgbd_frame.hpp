@@ -9,12 +9,12 @@
 
 namespace stillmap {
 
-/// One colour image and the depth image that goes with it, of equal size. Made once by a reader,
+/// One colour image and the depth image taken with it, of equal size. A frame is made once and
 /// never changed afterwards.
 struct RgbdFrame {
   FrameId id;
-  Stamp stamp;                 ///< of the colour image; it is the frame's stamp
-  double depth_stamp_s = 0.0;  ///< when the depth image was taken
+  Stamp stamp;                 ///< time of the colour image
+  double depth_stamp_s = 0.0;  ///< time of the depth image
   ColorImage color;
   GrayImage gray;
   DepthImage depth;

@@ -5,10 +5,10 @@
 
 namespace stillmap {
 
-/// Wall-clock time since it was made or last read. For reports only: no result depends on it.
+/// Measures wall-clock time. For reports only: no result depends on it.
 class Stopwatch {
  public:
-  /// Milliseconds since the last lap.
+  /// Milliseconds since the last lap, or since construction.
   double lap_ms() {
     const Clock::time_point now = Clock::now();
     const double ms = std::chrono::duration<double, std::milli>(now - last_).count();

@@ -9,7 +9,7 @@
 namespace stillmap {
 
 /// A time as a file gave it. The text is kept because outputs repeat stamps exactly as they were
-/// read; a double holds them only to about 0.2 microseconds.
+/// read: a double resolves today's stamps to about 0.2 microseconds only.
 struct Stamp {
   double seconds = 0.0;
   std::string text;
@@ -20,7 +20,7 @@ struct StampedPose {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
 };
 
-/// Poses in the order of their stamps, strictly increasing.
+/// Poses by stamp, strictly increasing.
 using Trajectory = std::vector<StampedPose>;
 
 }  // namespace stillmap
