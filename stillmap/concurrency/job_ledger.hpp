@@ -33,7 +33,7 @@ class JobLedger {
           if (before) before();
           return job();
         });
-    jobs_.push_back({due_frame, task->get_future()});
+    jobs_.push_back({due_frame, task->get_future().share()});
     if (worker_ != nullptr) {
       worker_->post([task] { (*task)(); });
     } else {
@@ -41,12 +41,20 @@ class JobLedger {
     }
   }
 
-  /// The results due at `frame` or before, in the order of submission. Waits for them.
+  /// A ledger of the same pending jobs, whose own jobs run inline. Pending jobs refer to what they
+  /// refer to, which must outlive the copy's use of them.
+  [[nodiscard]] JobLedger inline_copy() const {
+    JobLedger copy(nullptr, before_job_);
+    copy.jobs_ = jobs_;
+    return copy;
+  }
+
+  /// Results due at `frame` or before, in the order of submission.
   [[nodiscard]] std::vector<Result> collect_due(std::int64_t frame) {
     std::vector<Result> results;
     while (!jobs_.empty() && jobs_.front().due_frame <= frame) {
-      std::future<Result> result = std::move(jobs_.front().result);
-      jobs_.pop_front();  // before get(), which may throw
+      const std::shared_future<Result> result = std::move(jobs_.front().result);
+      jobs_.pop_front();  // first, for get() may throw
       results.push_back(result.get());
     }
     return results;
@@ -57,7 +65,7 @@ class JobLedger {
  private:
   struct Job {
     std::int64_t due_frame;
-    std::future<Result> result;
+    std::shared_future<Result> result;  // an inline copy of the ledger reads it too
   };
 
   Worker* worker_;

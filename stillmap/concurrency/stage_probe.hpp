@@ -17,9 +17,11 @@ inline void begin_work(const StageProbe& probe, Stage stage) {
   if (probe) probe(stage);
 }
 
+class Worker;
+
 /// Where and how observed a stage does its work.
 struct StageOptions {
-  bool threaded = false;  ///< on a thread of its own
+  Worker* worker = nullptr;  ///< not owned; null: jobs run inline
   StageProbe probe = {};
 };
 

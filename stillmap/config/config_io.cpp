@@ -96,14 +96,26 @@ void set_value(std::span<const FieldRef> fields, std::string_view assignment) {
   if (equals == std::string_view::npos) {
     throw Error("--set {}: expected key=value", printable(assignment));
   }
-  const std::string_view key = assignment.substr(0, equals);
+  set_value(fields, assignment.substr(0, equals), assignment.substr(equals + 1), "--set");
+}
+
+void set_value(std::span<const FieldRef> fields,
+               std::string_view key,
+               std::string_view value,
+               std::string_view where) {
   const FieldRef* field = find_field(fields, key);
   if (field == nullptr) {
     const FieldRef* member = find_group(fields, key);
-    if (member != nullptr) throw_is_group(*member, key, "--set");
-    throw_unknown_key(fields, key, "--set");
+    if (member != nullptr) throw_is_group(*member, key, where);
+    throw_unknown_key(fields, key, where);
   }
-  assign(*field, assignment.substr(equals + 1), Quoting::kPlain, "--set");
+  assign(*field, value, Quoting::kPlain, where);
+}
+
+std::string value_text(std::span<const FieldRef> fields, std::string_view key) {
+  const FieldRef* field = find_field(fields, key);
+  if (field == nullptr) throw_unknown_key(fields, key, "settings");
+  return format_value(*field);
 }
 
 std::string dump_yaml(std::span<const FieldRef> fields) {

@@ -67,6 +67,15 @@ void load_yaml_text(std::span<const FieldRef> fields,
 /// Sets one value from the "key=value" of the command line's --set, as strictly as load_yaml.
 void set_value(std::span<const FieldRef> fields, std::string_view assignment);
 
+/// Sets one value from its text. `where` begins the messages.
+void set_value(std::span<const FieldRef> fields,
+               std::string_view key,
+               std::string_view value,
+               std::string_view where);
+
+/// The value of a key as text. Throws Error for an unknown key.
+[[nodiscard]] std::string value_text(std::span<const FieldRef> fields, std::string_view key);
+
 /// The current values as YAML with a comment on each line. load_yaml reads back the same bits.
 [[nodiscard]] std::string dump_yaml(std::span<const FieldRef> fields);
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <utility>
+
 #include <opencv2/core/mat.hpp>
 
 namespace stillmap {
@@ -28,6 +30,28 @@ struct DepthImage {
   cv::Mat1f mat;
   DepthImage() = default;
   explicit DepthImage(cv::Mat1f metres) : mat(std::move(metres)) {}
+};
+
+/// A set of pixels: 8 bits each, not 0 where the pixel is in the set. An empty image is the empty
+/// set.
+struct Mask {
+  cv::Mat1b mat;
+  Mask() = default;
+  explicit Mask(cv::Mat1b pixels) : mat(std::move(pixels)) {}
+
+  [[nodiscard]] bool empty() const { return mat.empty(); }
+  /// Whether the pixel is in the set.
+  [[nodiscard]] bool covers(int row, int column) const { return !empty() && mat(row, column) != 0; }
+};
+
+/// Depth in metres at half the resolution of a depth image: cell (r, c) is pixel (2r, 2c). 0 where
+/// nothing is known; an empty image knows nothing.
+struct HalfDepth {
+  cv::Mat1f mat;
+  HalfDepth() = default;
+  explicit HalfDepth(cv::Mat1f metres) : mat(std::move(metres)) {}
+
+  [[nodiscard]] bool empty() const { return mat.empty(); }
 };
 
 }  // namespace stillmap

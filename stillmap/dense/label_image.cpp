@@ -33,7 +33,7 @@ std::uint8_t class_label(std::string_view class_name) {
   return found == all.end() ? std::uint8_t{0} : static_cast<std::uint8_t>(found - all.begin() + 1);
 }
 
-cv::Mat1b label_image(const DepthImage& depth, const FrameDynamics& dynamics) {
+LabelImage label_image(const DepthImage& depth, const FrameDynamics& dynamics) {
   const cv::Mat1b& ids = dynamics.objects.mask.mat;
   if (ids.empty()) return {};
   const std::vector<TrackedObject>& objects = dynamics.objects.objects;
@@ -50,7 +50,7 @@ cv::Mat1b label_image(const DepthImage& depth, const FrameDynamics& dynamics) {
       if (rule.label != 0 && rule.depths.contains(depth.mat(row, x))) labels(row, x) = rule.label;
     }
   }
-  return labels;
+  return LabelImage(labels);
 }
 
 }  // namespace stillmap

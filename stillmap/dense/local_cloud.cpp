@@ -102,12 +102,12 @@ PointCloud local_cloud(const cv::Mat1f& depth,
                        const ColorImage& color,
                        const cv::Mat2f& rays,
                        const LocalCloudConfig& config,
-                       const cv::Mat1b& labels) {
+                       const LabelImage& labels) {
   STILLMAP_CHECK(depth.size() == rays.size() && color.mat.size() == rays.size());
-  STILLMAP_CHECK(labels.empty() || labels.size() == rays.size());
+  STILLMAP_CHECK(labels.empty() || labels.mat.size() == rays.size());
   STILLMAP_CHECK(config.cells_across > 0);
   const int side = std::max(1, (depth.cols + config.cells_across / 2) / config.cells_across);
-  const Images images{depth, color.mat, rays, labels};
+  const Images images{depth, color.mat, rays, labels.mat};
   CellPoints points(images, config);
   PointCloud cloud;
   for (int row = 0; row < depth.rows; row += side) {

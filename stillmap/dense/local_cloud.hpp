@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <utility>
+
 #include <opencv2/core/mat.hpp>
 
 #include "stillmap/core/fields.hpp"
@@ -8,6 +10,16 @@
 #include "stillmap/core/point_cloud.hpp"
 
 namespace stillmap {
+
+/// A class label for each pixel: class_label() of the static object there, 0 where there is none.
+/// Empty: no labels are known.
+struct LabelImage {
+  cv::Mat1b mat;
+  LabelImage() = default;
+  explicit LabelImage(cv::Mat1b labels) : mat(std::move(labels)) {}
+
+  [[nodiscard]] bool empty() const { return mat.empty(); }
+};
 
 struct LocalCloudConfig {
   int cells_across = 160;
@@ -49,6 +61,6 @@ struct LocalCloudConfig {
                                      const ColorImage& color,
                                      const cv::Mat2f& rays,
                                      const LocalCloudConfig& config,
-                                     const cv::Mat1b& labels = {});
+                                     const LabelImage& labels = {});
 
 }  // namespace stillmap

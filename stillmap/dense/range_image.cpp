@@ -27,9 +27,9 @@ BlockDepth block_depth(const cv::Mat1f& depth,
   for (int row = block.y; row < block.y + block.height; ++row) {
     const float* z = depth[row];
     const std::uint8_t* excluded =
-        dynamic_regions.excluded.empty() ? nullptr : dynamic_regions.excluded[row];
+        dynamic_regions.excluded.empty() ? nullptr : dynamic_regions.excluded.mat[row];
     const std::uint8_t* moving =
-        dynamic_regions.moving.empty() ? nullptr : dynamic_regions.moving[row];
+        dynamic_regions.moving.empty() ? nullptr : dynamic_regions.moving.mat[row];
     for (int x = block.x; x < block.x + block.width; ++x) {
       const bool moves = moving != nullptr && moving[x] != 0;
       nearest.excluded |= moves || (excluded != nullptr && excluded[x] != 0);
@@ -81,8 +81,8 @@ RangeCell::RangeCell(float range_m, bool moving)
 RangeImage range_image(const cv::Mat1f& depth,
                        const DynamicRegions& dynamic_regions,
                        const RangeImageConfig& config) {
-  for (const cv::Mat1b& mask : {dynamic_regions.excluded, dynamic_regions.moving}) {
-    STILLMAP_CHECK(mask.empty() || mask.size() == depth.size());
+  for (const Mask& mask : {dynamic_regions.excluded, dynamic_regions.moving}) {
+    STILLMAP_CHECK(mask.empty() || mask.mat.size() == depth.size());
   }
   STILLMAP_CHECK(config.block_px > 0 && config.rim_blocks >= 0);
   const int side = config.block_px;

@@ -8,6 +8,7 @@
 #include <opencv2/core/mat.hpp>
 
 #include "stillmap/core/fields.hpp"
+#include "stillmap/core/images.hpp"
 
 namespace stillmap {
 
@@ -65,8 +66,8 @@ struct RangeImage {
 
 /// What in a frame is not the static world. Images of its size, or empty.
 struct DynamicRegions {
-  cv::Mat1b excluded;  ///< not 0 where depth says nothing of what is static
-  cv::Mat1b moving;    ///< not 0 where it is that of something known to move
+  Mask excluded;  ///< pixels whose depth says nothing of the static surface
+  Mask moving;    ///< pixels of what is known to move
 };
 
 /// The least measured depth (metres) in and around each block: what is nearer is free space there.

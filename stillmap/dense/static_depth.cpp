@@ -11,8 +11,8 @@
 namespace stillmap {
 namespace {
 
-/// Depths over 0 and up to a limit, of pixels that are 0 in `without`.
-cv::Mat1f within(const cv::Mat1f& depth, const cv::Mat1b& without, float max_depth_m) {
+/// Depths over 0 and up to a limit, without the pixels of `excluded`.
+cv::Mat1f within(const cv::Mat1f& depth, const Mask& excluded, float max_depth_m) {
   cv::Mat1f kept(depth.size());
   const auto columns = static_cast<std::size_t>(depth.cols);
   for (int row = 0; row < depth.rows; ++row) {
@@ -21,8 +21,8 @@ cv::Mat1f within(const cv::Mat1f& depth, const cv::Mat1b& without, float max_dep
     for (std::size_t x = 0; x < columns; ++x) {
       out[x] = z[x] > 0 && z[x] <= max_depth_m ? z[x] : 0.0F;  // so written, NaN is left out too
     }
-    if (without.empty()) continue;
-    const std::uint8_t* left_out = without[row];
+    if (excluded.empty()) continue;
+    const std::uint8_t* left_out = excluded.mat[row];
     for (std::size_t x = 0; x < columns; ++x) out[x] = left_out[x] != 0 ? 0.0F : out[x];
   }
   return kept;
@@ -31,9 +31,9 @@ cv::Mat1f within(const cv::Mat1f& depth, const cv::Mat1b& without, float max_dep
 }  // namespace
 
 cv::Mat1f static_depth(const cv::Mat1f& depth,
-                       const cv::Mat1b& dynamic,
+                       const Mask& dynamic,
                        const StaticDepthConfig& config) {
-  STILLMAP_CHECK(dynamic.empty() || dynamic.size() == depth.size());
+  STILLMAP_CHECK(dynamic.empty() || dynamic.mat.size() == depth.size());
   const auto max_depth = static_cast<float>(config.max_depth_m);
   cv::Mat1f kept;
   if (config.edges == "fixed" || config.edges == "growing") {

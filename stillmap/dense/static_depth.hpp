@@ -6,6 +6,7 @@
 #include <opencv2/core/mat.hpp>
 
 #include "stillmap/core/fields.hpp"
+#include "stillmap/core/images.hpp"
 #include "stillmap/dense/depth_edges.hpp"
 
 namespace stillmap {
@@ -51,7 +52,7 @@ struct StaticDepthConfig {
 /// islands (without_islands()). Edges go before far depth does, for the rim of something before a
 /// far wall is between the two as well. "by_mode" stands for "off" here.
 [[nodiscard]] cv::Mat1f static_depth(const cv::Mat1f& depth,
-                                     const cv::Mat1b& dynamic,
+                                     const Mask& dynamic,
                                      const StaticDepthConfig& config);
 
 }  // namespace stillmap

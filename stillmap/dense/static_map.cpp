@@ -16,12 +16,11 @@ constexpr int kJumpsPerWidth = 70;
 
 }  // namespace
 
-CloudConfig CloudConfig::resolved_for(std::string_view dynamics_mode) const {
+CloudConfig CloudConfig::resolved_for(const CloudRules& rules) const {
   CloudConfig config = *this;
-  const bool paper = dynamics_mode == "paper", full = dynamics_mode == "full";
-  if (depth.edges == "by_mode") config.depth.edges = paper ? "fixed" : full ? "growing" : "off";
-  if (depth.islands == "by_mode") config.depth.islands = paper ? "on" : "off";
-  if (free_space == "by_mode") config.free_space = full ? "on" : "off";
+  if (depth.edges == "by_mode") config.depth.edges = rules.edges;
+  if (depth.islands == "by_mode") config.depth.islands = rules.islands;
+  if (free_space == "by_mode") config.free_space = rules.free_space;
   return config;
 }
 
@@ -29,7 +28,7 @@ StaticView static_view(const RgbdFrame& frame,
                        const cv::Mat2f& rays,
                        const CloudConfig& config,
                        const DynamicRegions& dynamic_regions,
-                       const cv::Mat1b& labels) {
+                       const LabelImage& labels) {
   const cv::Mat1f depth = static_depth(frame.depth.mat, dynamic_regions.excluded, config.depth);
   return {compact(local_cloud(depth, frame.color, rays, config.local, labels)),
           range_image(frame.depth.mat, dynamic_regions, config.range)};
@@ -51,16 +50,16 @@ PointCloud static_map(std::span<const PosedView> views,
   return without_moved(all, ranges, camera, config.free, threads);
 }
 
-DynamicRegions dynamic_regions(const DynamicMask& mask, const cv::Mat1b& excluded) {
-  if (mask.extended.empty()) return {excluded, {}};
-  const int side = std::max(1, mask.jumps.cols / kJumpsPerWidth);
+DynamicRegions dynamic_regions(const DynamicMask& mask, const Mask& excluded) {
+  if (mask.extended.mat.empty()) return {excluded, {}};
+  const int side = std::max(1, mask.jumps.mat.cols / kJumpsPerWidth);
   cv::Mat1b moving;
-  cv::morphologyEx(mask.jumps,
+  cv::morphologyEx(mask.jumps.mat,
                    moving,
                    cv::MORPH_OPEN,
                    cv::getStructuringElement(cv::MORPH_RECT, cv::Size(side, side)));
-  cv::bitwise_or(moving, mask.extended, moving);
-  return {excluded, moving};
+  cv::bitwise_or(moving, mask.extended.mat, moving);
+  return {excluded, Mask(moving)};
 }
 
 }  // namespace stillmap

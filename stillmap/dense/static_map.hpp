@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <span>
 #include <string>
-#include <string_view>
 
 #include <opencv2/core/mat.hpp>
 
@@ -32,14 +31,8 @@ struct CloudConfig {
   RangeImageConfig range;
   FreeSpaceConfig free;
 
-  /// With every "by_mode" decided for a `dynamics.mode`.
-  ///
-  /// `paper` gets Fan 2020 to the letter: edges by its fixed threshold, and islands. `full` has
-  /// edges by a threshold that grows with depth as the camera's noise does, since the fixed one
-  /// costs the farther walls; instead of islands it removes what other views see through, or take
-  /// for what moves: most islands are legs of chairs, or what is seen between people. `off` and
-  /// `mask` get nothing: they are there to be compared with.
-  [[nodiscard]] CloudConfig resolved_for(std::string_view dynamics_mode) const;
+  /// With every "by_mode" replaced by the rules of a mode.
+  [[nodiscard]] CloudConfig resolved_for(const CloudRules& rules) const;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -84,11 +77,11 @@ struct CloudConfig {
                                      const cv::Mat2f& rays,
                                      const CloudConfig& config,
                                      const DynamicRegions& dynamic_regions,
-                                     const cv::Mat1b& labels);
+                                     const LabelImage& labels);
 
-/// What the dynamics stage says of a frame, for the cloud: excluded are all of its dynamic pixels
-/// and a margin; known to move are those of objects, and of depth jumps that cover a square with
-/// sides of 1/70 of the image's width, which noise does not.
-[[nodiscard]] DynamicRegions dynamic_regions(const DynamicMask& mask, const cv::Mat1b& excluded);
+/// The dynamic regions of a frame, for the cloud. Excluded are all dynamic pixels and a margin.
+/// Known to move are those of objects, and of depth jumps that cover a square with sides of 1/70 of
+/// the image's width, which noise does not.
+[[nodiscard]] DynamicRegions dynamic_regions(const DynamicMask& mask, const Mask& excluded);
 
 }  // namespace stillmap

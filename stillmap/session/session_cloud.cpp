@@ -18,11 +18,9 @@ SystemConfig settings_of(const Session& session, const std::string& place) {
 
 PointCloud session_cloud(const Session& session, SubmapId submap, const std::string& place) {
   const SystemConfig settings = settings_of(session, place);
-  const CloudConfig config = settings.cloud.resolved_for(settings.dynamics.mode);
-  std::vector<PosedView> views;
+  const CloudConfig config = settings.cloud.resolved_for(dynamics_mode(settings.dynamics.mode).cloud);
   for (const ViewRecord& record : session.views) {
-    const FrameRecord& frame = session.frames[record.frame];
-    if (submap_of(session, frame) != submap) continue;
+    if (submap_of(session, session.frames[record.frame]) != submap) continue;
     if (config.free_space == "on" && record.view->range.cells.empty()) {
       throw Error(
           "{}: invalid view of frame {}: it knows no free space, which cloud.free_space "
@@ -30,9 +28,8 @@ PointCloud session_cloud(const Session& session, SubmapId submap, const std::str
           place,
           record.frame);
     }
-    views.push_back({T_world_frame(session, frame), record.view.get()});
   }
-  return static_map(views, session.camera, config);
+  return static_map(posed_views(session, submap), session.camera, config);
 }
 
 }  // namespace stillmap

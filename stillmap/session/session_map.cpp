@@ -43,4 +43,14 @@ Trajectory keyframes_in(const Session& session, SubmapId submap) {
   return trajectory;
 }
 
+std::vector<PosedView> posed_views(const Session& session, SubmapId submap) {
+  std::vector<PosedView> views;
+  for (const ViewRecord& record : session.views) {
+    const FrameRecord& frame = session.frames[record.frame];
+    if (submap_of(session, frame) != submap) continue;
+    views.push_back({T_world_frame(session, frame), record.view.get()});
+  }
+  return views;
+}
+
 }  // namespace stillmap

@@ -27,4 +27,8 @@ namespace stillmap {
 /// Poses of the key frames of a submap, by id.
 [[nodiscard]] Trajectory keyframes_in(const Session& session, SubmapId submap);
 
+/// The views of a submap at their frames' poses, in the order of the frames. They refer to the
+/// session.
+[[nodiscard]] std::vector<PosedView> posed_views(const Session& session, SubmapId submap);
+
 }  // namespace stillmap

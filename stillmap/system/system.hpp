@@ -1,149 +1,102 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <deque>
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
-#include "stillmap/concurrency/job_ledger.hpp"
-#include "stillmap/concurrency/worker.hpp"
 #include "stillmap/core/rgbd_frame.hpp"
-#include "stillmap/core/trajectory.hpp"
-#include "stillmap/perception/motion/dynamics_stage.hpp"
-#include "stillmap/session/session.hpp"
-#include "stillmap/session/system_config.hpp"
-#include "stillmap/system/frame_result.hpp"
-#include "stillmap/system/loop_stage.hpp"
-#include "stillmap/system/prepared_frame.hpp"
-#include "stillmap/system/view_stage.hpp"
+#include "stillmap/geometry/camera.hpp"
+#include "stillmap/perception/objects/frame_objects.hpp"
+#include "stillmap/system/observer.hpp"
+#include "stillmap/system/results.hpp"
+#include "stillmap/system/settings.hpp"
 
 namespace stillmap {
 
-/// A place that was recognised: the stamps of the key frames that saw it.
-struct ClosedLoop {
-  Stamp earlier, later;
-};
-
-/// All that a finished run knows, under final poses.
-struct RunResult {
-  /// The run's tracked frames in the submap that has most of them. Others were tracked after a loss
-  /// in a submap of their own, which no known place has joined to this one.
-  Trajectory trajectory;
-  std::size_t frames_elsewhere = 0;  ///< tracked, but in such a submap
-  Trajectory keyframes;              ///< of that submap, also those of a session that it continues
-  PointCloud map;                    ///< of that submap
-  std::vector<ClosedLoop> loops;     ///< closed in this run
-  bool lost_at_end = false;
-};
+class Map;
+enum class Stage;
+struct PreparedFrame;
+struct Session;
 
 struct SystemOptions {
-  int threads = 1;  ///< 2 or more: mapping, clouds and loops beside the caller; the end on so many
+  /// 1: everything runs inside the calls. 2 or more: mapping, dense map and loops run beside the
+  /// caller, and the map is put together on that many threads. The results are the same bits.
+  int threads = 1;
   bool localize_only = false;  ///< the map stays as it is
-  StageProbe probe = {};       ///< of tests
+  /// Observers are given the dense map so far whenever that many frames have been processed;
+  /// 0: at the end alone.
+  std::int64_t snapshot_every_frames = 0;
+  std::vector<Observer*> observers = {};    ///< not owned; they outlive the System
+  std::function<void(Stage)> probe = {};  ///< concurrency/stage_probe.hpp; of tests
 };
 
 /// The SLAM system: owns the map and every stage.
 ///
-/// Frames go in one after another, in the order of their stamps; each comes back with its pose. The
-/// caller may be a plain loop: with `threads` 1 everything runs inside process(), with 2 or more
-/// mapping and clouds run beside it, and the results are the same bits.
+/// Frames go in one after another, in the order of their stamps, from one thread; each comes back
+/// with its pose. World coordinates are those of the first tracked camera: x right, y down, z
+/// forward, metres.
+///
+///   System slam({}, builtin_camera("tum_fr1"), {.threads = 2});
+///   FrameResult result = slam.process(make_frame(stamp, color, depth));
+///   RunResult run = slam.finish();
 class System {
  public:
   /// Throws Error for settings that contradict each other.
-  System(const SystemConfig& config, const CameraModel& camera, const SystemOptions& options);
-
-  /// Jobs that have not begun are dropped; one that runs is waited for, as it uses what is here.
-  ~System() { worker_.reset(); }
+  System(const Settings& settings, const CameraModel& camera, const SystemOptions& options = {});
+  ~System();
   System(const System&) = delete;
   System& operator=(const System&) = delete;
 
-  /// Goes on from a saved session, once the camera sees a place that it knows. Before the first
-  /// frame. Throws Error when the session is of another camera or of another image pyramid.
-  void load(Session session);
-
-  /// The part of process() that needs nothing of other frames. May be called on any thread while
-  /// others are being processed. `objects`: those of this frame, where something looks for objects.
-  [[nodiscard]] PreparedFrame prepare(FramePtr frame, FrameObjects objects) const;
-
-  /// Tracks a frame of the camera's size, as prepare() of this system gave it. Only with objects of
-  /// its own may it become a key frame, begin a map or be seen in the cloud.
-  FrameResult process(PreparedFrame prepared, MaskOrigin origin = MaskOrigin::kOwn);
-
-  /// Both at once.
+  /// Tracks a frame of the camera's size. `objects` are those that a network has found in it
+  /// (ObjectFinder gives them). Only with objects of its own may a frame become a key frame, begin a
+  /// map or be seen in the dense map.
+  FrameResult process(const RgbdFrame& frame, FrameObjects objects = {});
   FrameResult process(const FramePtr& frame,
                       FrameObjects objects = {},
                       MaskOrigin origin = MaskOrigin::kOwn);
 
-  /// The own objects of a frame that was processed while they were awaited, in the order of those
-  /// frames, and before the next is processed: it may become a key frame now, with the features off
-  /// its own masks, and be seen in the cloud. Nothing happens when it had no pose, or when one
-  /// after it was given before.
-  void take_objects(FrameObjects objects);
+  /// The part of process() that needs no other frame. May be called on any thread while earlier
+  /// frames are processed.
+  [[nodiscard]] PreparedFrame prepare(FramePtr frame, FrameObjects objects) const;
+  FrameResult process(PreparedFrame prepared, MaskOrigin origin = MaskOrigin::kOwn);
 
-  /// Nothing to track in: the next frame needs objects of its own, as it may begin a map.
+  /// The own objects of a frame that was processed while they were awaited, in the order of those
+  /// frames. It may become a key frame now, with the features off its own masks, and be seen in the
+  /// dense map. Nothing happens when it had no pose, or when a later one was given before.
+  void take_objects(FrameObjects objects);
+  /// No known place to track in: the next frame may begin a map and needs objects of its own.
   [[nodiscard]] bool needs_own_objects() const;
 
-  /// Ends the run: waits for pending work and assembles the cloud. Call once.
-  [[nodiscard]] RunResult finish();
+  /// The dense map so far: the bits that finish() would give now. The run goes on as if it had not
+  /// been asked for. Takes seconds for a large map.
+  [[nodiscard]] PointCloud map_snapshot() const;
 
-  /// The cloud as it would be with the frames at other poses, in the order of
-  /// RunResult::trajectory; frames without a pose add nothing to it, nor do those that are not
-  /// in there. After finish().
-  [[nodiscard]] PointCloud cloud_with_poses(
+  /// Ends the run: waits for pending work and makes the map. Call once.
+  [[nodiscard]] RunResult finish();
+  /// The map as it would be with the frames at other poses, in the order of RunResult::trajectory;
+  /// frames without a pose add nothing to it. After finish().
+  [[nodiscard]] PointCloud map_with_poses(
       std::span<const std::optional<Eigen::Isometry3d>> T_world_frames) const;
 
-  /// What can be saved. After finish(); nothing else may be asked then.
-  [[nodiscard]] Session take_session() { return std::move(session_); }
-  [[nodiscard]] const Map& map() const { return session_.map; }
-  /// Readout time of the camera's rolling shutter, as learnt so far.
-  [[nodiscard]] double readout_s() const { return tracker_.readout_s(); }
+  /// Goes on from a saved session (session/session_io.hpp) once the camera sees a place that it
+  /// knows. Before the first frame. Throws Error when the session is of another camera or of
+  /// another image pyramid.
+  void load(Session session);
+  /// The session that can be saved. After finish(); nothing else may be asked then.
+  [[nodiscard]] Session take_session();
+
+  /// The sparse map: key frames and landmarks.
+  [[nodiscard]] const Map& map() const;
+  /// Readout time of the camera's rolling shutter, seconds, as learnt so far.
+  [[nodiscard]] double readout_s() const;
 
  private:
-  /// A tracked frame whose own objects are looked for.
-  struct AwaitingObjects {
-    FramePtr frame;
-    TrackedFrame tracked;
-    std::size_t record;  // in session_.frames
-  };
-
-  [[nodiscard]] bool may_begin_submap(const Features& features) const;
-  [[nodiscard]] TrackedFrame track(const RgbdFrame& frame, Features features, MaskOrigin origin);
-  [[nodiscard]] KeyframeId insert_keyframe(const RgbdFrame& frame, const TrackedFrame& tracked);
-  [[nodiscard]] TrackedFrame without_masked_features(const AwaitingObjects& awaiting,
-                                                     const cv::Mat1b& excluded) const;
-  void remember(const FramePtr& frame, FrameResult& result, MaskOrigin origin);
-  void count_landmarks(const TrackedFrame& tracked);
-  void update_map(std::int64_t frame);
-  void apply(const MapUpdate& update);
-
-  SystemConfig config_;
-  CloudConfig cloud_config_;  // resolved
-  CameraModel camera_;
-  std::size_t threads_;
-  bool localize_only_;
-  StageProbe probe_;
-  DynamicsStage dynamics_;
-  OrbExtractor extractor_;
-  MeasurementModel measure_;
-  Session session_;
-  std::size_t first_frame_ = 0;  // of this run in the session
-  Tracker tracker_;
-
-  std::int64_t frame_number_ = 0;  // of those processed
-  std::deque<AwaitingObjects> awaiting_;
-  KeyframeAge since_keyframe_;
-  std::vector<ClosedLoop> closed_loops_;
-  int lost_frames_ = 0;  // in a row
-  SubmapId next_submap_{0};
-  /// Corrections move the submap; what compares frames with their past goes on in coordinates that
-  /// stay.
-  Eigen::Isometry3d T_odometry_world_ = Eigen::Isometry3d::Identity();
-
-  std::unique_ptr<Worker> worker_;
-  JobLedger<MapUpdate> mapping_jobs_;
-  ViewStage views_;
-  LoopStage loops_;
+  struct Stages;
+  std::unique_ptr<Stages> stages_;
 };
 
 }  // namespace stillmap

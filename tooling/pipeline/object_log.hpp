@@ -10,7 +10,7 @@
 
 #include "stillmap/core/trajectory.hpp"
 #include "stillmap/perception/motion/dynamic_objects.hpp"
-#include "stillmap/perception/motion/motion_state.hpp"
+#include "stillmap/perception/motion/motion_estimator.hpp"
 #include "stillmap/system/frame_result.hpp"
 #include "tooling/report/run_report.hpp"
 

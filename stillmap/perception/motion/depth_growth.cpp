@@ -268,7 +268,7 @@ class GrowthGrid {
                            object_.mask.mat[y] + x0_,
                            object_.mask.mat[y1] + x0_,
                            object_.depth.mat.cols - x0_};
-    const float* known = rule_.known_static.empty() ? nullptr : rule_.known_static[y / 2] + x0_ / 2;
+    const float* known = rule_.known_static.empty() ? nullptr : rule_.known_static.mat[y / 2] + x0_ / 2;
     const auto columns = static_cast<std::size_t>(columns_);
     first_depths(pixels, columns, row_depth_.data());
     find_ids(pixels, static_cast<std::uint8_t>(object_.id), columns, row_mask_.data());

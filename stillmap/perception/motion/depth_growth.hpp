@@ -3,6 +3,7 @@
 
 #include <opencv2/core/mat.hpp>
 
+#include "stillmap/core/images.hpp"
 #include "stillmap/perception/objects/object_depth.hpp"
 #include "stillmap/perception/objects/object_view.hpp"
 
@@ -17,7 +18,7 @@ struct GrowthRule {
   int longest_way_px = 0;
   double min_mask_share = 0;
   bool drop_outliers = false;
-  cv::Mat1f known_static;  ///< depth at every second pixel of what must not join; may be empty
+  HalfDepth known_static;  ///< depth of the static surface, which must not join; may be empty
   float static_m = 0;      ///< how near to it: static_m + static_per_m z^2
   float static_per_m = 0;
 };

@@ -97,7 +97,7 @@ void mark_revealed(std::span<const float> depth,
 
 }  // namespace
 
-cv::Mat1b depth_jumps(const DepthImage& current, const DepthImage& previous, double jump_m) {
+JumpImage depth_jumps(const DepthImage& current, const DepthImage& previous, double jump_m) {
   STILLMAP_CHECK(current.mat.size() == previous.mat.size());
   cv::Mat1b jumps(current.mat.size());
   const auto limit = static_cast<float>(jump_m);
@@ -113,19 +113,17 @@ cv::Mat1b depth_jumps(const DepthImage& current, const DepthImage& previous, dou
           known ? (nearer ? kCameNearer : 0) + (farther ? kWentFarther : 0) : 0);
     }
   }
-  return jumps;
+  return JumpImage(jumps);
 }
 
-void WarpedDepth::fill_from(const WarpedDepth& other) {
-  if (mat.empty()) {
-    mat = other.mat.clone();
-    return;
-  }
-  for (int row = 0; row < mat.rows; ++row) {
-    float* cell = mat[row];
+HalfDepth filled_from(HalfDepth depth, const HalfDepth& other) {
+  if (depth.empty()) return HalfDepth(other.mat.clone());
+  for (int row = 0; row < depth.mat.rows; ++row) {
+    float* cell = depth.mat[row];
     const float* known = other.mat[row];
-    for (int c = 0; c < mat.cols; ++c) cell[c] = cell[c] > 0 ? cell[c] : known[c];
+    for (int c = 0; c < depth.mat.cols; ++c) cell[c] = cell[c] > 0 ? cell[c] : known[c];
   }
+  return depth;
 }
 
 DepthWarper::DepthWarper(const CameraModel& camera)
@@ -141,9 +139,9 @@ DepthWarper::DepthWarper(const CameraModel& camera)
   }
 }
 
-WarpedDepth DepthWarper::warp(const DepthImage& previous,
-                              const Eigen::Isometry3d& T_current_previous,
-                              const cv::Mat1b& without) const {
+HalfDepth DepthWarper::warp(const DepthImage& previous,
+                            const Eigen::Isometry3d& T_current_previous,
+                            const Mask& excluded) const {
   STILLMAP_CHECK(previous.mat.rows == camera_.height_px && previous.mat.cols == camera_.width_px);
   const Eigen::Matrix<float, 3, 4> T = T_current_previous.matrix().topRows<3>().cast<float>();
   const auto width = static_cast<std::size_t>(ray_x_.cols);
@@ -153,8 +151,8 @@ WarpedDepth DepthWarper::warp(const DepthImage& previous,
   for (int row = 0; row < ray_x_.rows; ++row) {
     const float* depth = previous.mat[2 * row];
     for (std::size_t c = 0; c < width; ++c) z[c] = depth[2 * c];
-    if (!without.empty()) {
-      const std::uint8_t* left_out = without[2 * row];
+    if (!excluded.empty()) {
+      const std::uint8_t* left_out = excluded.mat[2 * row];
       for (std::size_t c = 0; c < width; ++c) z[c] = left_out[2 * c] != 0 ? 0.0F : z[c];
     }
     project_row(T, ray_x_[row], ray_y_[row], {cells.data(), z.data(), width});
@@ -163,7 +161,7 @@ WarpedDepth DepthWarper::warp(const DepthImage& previous,
       cell = std::min(cell, z[c]);
     }
   }
-  WarpedDepth warped{cv::Mat1f(ray_x_.size())};
+  HalfDepth warped{cv::Mat1f(ray_x_.size())};
   std::ranges::transform(nearest.begin(), nearest.end() - 1, warped.mat[0], [](float m) {
     return m < kNothingNear ? m : 0.0F;
   });
@@ -206,8 +204,8 @@ void DepthWarper::project_row(const Eigen::Matrix<float, 3, 4>& T,
   }
 }
 
-cv::Mat1b depth_jumps(const DepthImage& current,
-                      const WarpedDepth& expected,
+JumpImage depth_jumps(const DepthImage& current,
+                      const HalfDepth& expected,
                       const DepthJumpConfig& config) {
   const cv::Mat1f& cells = expected.mat;
   STILLMAP_CHECK(cells.rows == cells_in(current.mat.rows) &&
@@ -221,7 +219,7 @@ cv::Mat1b depth_jumps(const DepthImage& current,
     mark_nearer(depth, least[y / 2], limit, jumps[y]);
     if (config.revealed) mark_revealed(depth, cells, y / 2, limit, jumps[y]);
   }
-  return jumps;
+  return JumpImage(jumps);
 }
 
 }  // namespace stillmap

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 #include <Eigen/Geometry>
 #include <opencv2/core/mat.hpp>
@@ -13,11 +14,18 @@
 
 namespace stillmap {
 
-/// What a pixel of an image of jumps says.
+/// The value of a pixel of a JumpImage.
 enum DepthJump : std::uint8_t {
   kNoJump = 0,       ///< as before, or missing now or before
   kCameNearer = 1,   ///< something stands where there was nothing
   kWentFarther = 2,  ///< what stood there is gone
+};
+
+/// Where depth has changed suddenly: a DepthJump for each pixel of an image.
+struct JumpImage {
+  cv::Mat1b mat;
+  JumpImage() = default;
+  explicit JumpImage(cv::Mat1b jumps) : mat(std::move(jumps)) {}
 };
 
 struct DepthJumpConfig {
@@ -47,30 +55,24 @@ struct DepthJumpConfig {
 
 /// Fan 2020, Eqs. (6)-(7): where the depth of a pixel differs from that of the same pixel before by
 /// more than `jump_m`, whatever the camera did in between. Missing depth is no jump.
-[[nodiscard]] cv::Mat1b depth_jumps(const DepthImage& current,
+[[nodiscard]] JumpImage depth_jumps(const DepthImage& current,
                                     const DepthImage& previous,
                                     double jump_m);
 
-/// Depth as it would be measured from elsewhere, for every second pixel of every second row of the
-/// image: cell (r, c) is pixel (2r, 2c). 0 where nothing is known.
-struct WarpedDepth {
-  cv::Mat1f mat;
-
-  /// Takes what `other` knows where this knows nothing. Both of the same camera; an empty one knows
-  /// nothing.
-  void fill_from(const WarpedDepth& other);
-};
+/// `depth` where it knows something, else `other`. Both of the same camera. May write to the pixels
+/// of `depth`, which is taken over.
+[[nodiscard]] HalfDepth filled_from(HalfDepth depth, const HalfDepth& other);
 
 /// Warps depth images of a camera, distortion included, from one pose of it to another.
 class DepthWarper {
  public:
   explicit DepthWarper(const CameraModel& camera);
 
-  /// The nearest measured point of `previous` at each cell, without the pixels that are not 0 in
-  /// `without`. `previous` has the camera's size, `without` the same or none.
-  [[nodiscard]] WarpedDepth warp(const DepthImage& previous,
-                                 const Eigen::Isometry3d& T_current_previous,
-                                 const cv::Mat1b& without = {}) const;
+  /// The depth of the nearest measured point of `previous` at each cell. The pixels of `excluded`
+  /// are left out. `previous` has the camera's size, `excluded` the same or none.
+  [[nodiscard]] HalfDepth warp(const DepthImage& previous,
+                               const Eigen::Isometry3d& T_current_previous,
+                               const Mask& excluded = {}) const;
 
  private:
   struct Row {
@@ -90,8 +92,8 @@ class DepthWarper {
 /// Where the current depth is nearer, or farther, than all of the warped depth within two pixels,
 /// by more than jump_m + jump_per_m z^2. So a depth edge that stands still is no jump, although it
 /// never falls on the same pixels twice. Missing depth is no jump. kWentFarther only if `revealed`.
-[[nodiscard]] cv::Mat1b depth_jumps(const DepthImage& current,
-                                    const WarpedDepth& expected,
+[[nodiscard]] JumpImage depth_jumps(const DepthImage& current,
+                                    const HalfDepth& expected,
                                     const DepthJumpConfig& config);
 
 }  // namespace stillmap

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
+
+#include <opencv2/core.hpp>
 
 #include "stillmap/core/error.hpp"
 #include "stillmap/perception/motion/interaction.hpp"
@@ -25,7 +28,7 @@ StateReason reason_of(Contact contact) {
 }
 
 /// The mask with the dynamic objects alone.
-cv::Mat1b dynamic_pixels(const FrameObjects& objects,
+ObjectMask dynamic_pixels(const FrameObjects& objects,
                          const MaskAreas& areas,
                          const std::vector<ObjectState>& states,
                          cv::Size image) {
@@ -42,7 +45,7 @@ cv::Mat1b dynamic_pixels(const FrameObjects& objects,
       }
     }
   }
-  return result;
+  return ObjectMask(result);
 }
 
 void paint(const PixelPatch& patch, std::uint8_t number, cv::Mat1b& image) {
@@ -58,33 +61,17 @@ void paint(const PixelPatch& patch, std::uint8_t number, cv::Mat1b& image) {
 
 }  // namespace
 
-std::string_view reason_name(StateReason reason) {
-  switch (reason) {
-    case StateReason::kBoxesApart:
-      return "nobody near";
-    case StateReason::kDepthsApart:
-      return "apart in depth";
-    case StateReason::kNotAsked:
-      return "interaction not judged";
-    case StateReason::kDynamicClass:
-      return "dynamic class";
-    case StateReason::kTouching:
-      return "somebody at it";
-    case StateReason::kDepthUnknown:
-      return "somebody may be at it";
-    case StateReason::kMoving:
-      return "moving";
-    case StateReason::kStaticClass:
-      break;
-  }
-  return "static class";
+Mask DynamicMask::all() const {
+  cv::Mat1b both;
+  cv::bitwise_or(extended.mat, jumps.mat, both);
+  return Mask(both);
 }
 
 DynamicObjects::DynamicObjects(const DynamicObjectsConfig& config,
                                const CameraModel& camera,
-                               DynamicsMode mode)
+                               const DynamicsMode& mode)
     : config_(config), mode_(mode), categories_(config.categories), warper_(camera) {
-  if (mode == DynamicsMode::kPaper) config_.extension.variant = "paper";
+  if (mode.extension == ExtensionRule::kBox) config_.extension.variant = "paper";
 }
 
 MeasuredObjects DynamicObjects::measure(const DepthImage& depth,
@@ -110,16 +97,17 @@ DynamicsResult DynamicObjects::judge(const DepthImage& depth,
   DynamicsResult result;
   result.states = judge_states(objects, measured.depths, moving);
   result.mask.raw = dynamic_pixels(objects, measured.areas, result.states, depth.mat.size());
-  WarpedDepth expected;
-  cv::Mat1f known_static;
-  if (mode_ == DynamicsMode::kFull && !previous.empty()) {
+  HalfDepth expected, known_static;
+  if (mode_.jumps == JumpRule::kWarpedFrames && !previous.empty()) {
     for (const PreviousDepth& earlier : previous) {
-      expected.fill_from(warper_.warp(earlier.depth, earlier.T_current_previous, earlier.dynamic));
+      expected = filled_from(
+          std::move(expected),
+          warper_.warp(earlier.depth, earlier.T_current_previous, earlier.dynamic));
     }
-    // Without the dynamic pixels of then, what is as it was may just not have moved yet.
-    if (!previous.front().dynamic.empty()) known_static = expected.mat;
+    // Without the dynamic pixels of then, an unchanged surface may just not have moved yet.
+    if (!previous.front().dynamic.empty()) known_static = expected;
   }
-  result.mask.extended = mode_ == DynamicsMode::kMask || !config_.extension.enabled
+  result.mask.extended = mode_.extension == ExtensionRule::kNone || !config_.extension.enabled
                              ? result.mask.raw
                              : extended_mask(depth, objects, measured, result.states, known_static);
   result.mask.jumps = jumps(depth, previous, expected);
@@ -140,7 +128,7 @@ std::vector<ObjectState> DynamicObjects::judge_states(const FrameObjects& object
   std::vector<ObjectState> states;
   for (std::size_t i = 0; i < objects.objects.size(); ++i) {
     ObjectState state = state_by_class(objects.objects[i], depths[i]);
-    if (state.category == Category::kPotentiallyDynamic && mode_ != DynamicsMode::kMask &&
+    if (state.category == Category::kPotentiallyDynamic && mode_.interaction &&
         config_.interaction.enabled) {
       const Interaction touch = judge_interaction({state.box, state.depths}, people);
       state.reason = reason_of(touch.contact);
@@ -148,7 +136,7 @@ std::vector<ObjectState> DynamicObjects::judge_states(const FrameObjects& object
       if (touch.person) state.person = people_tracks[*touch.person];
     }
     const bool moves = std::ranges::find(moving, state.track) != moving.end();
-    if (mode_ == DynamicsMode::kFull && moves && !state.dynamic) {
+    if (mode_.motion && moves && !state.dynamic) {
       state.reason = StateReason::kMoving;
       state.dynamic = true;
     }
@@ -161,6 +149,7 @@ ObjectState DynamicObjects::state_by_class(const TrackedObject& object,
                                            const ObjectDepths& depths) const {
   ObjectState state;
   state.track = object.track;
+  state.class_name = object.detection.class_name;
   state.category = categories_.of(object.detection.class_name);
   state.dynamic = state.category == Category::kDynamic;
   if (state.dynamic) state.reason = StateReason::kDynamicClass;
@@ -172,11 +161,11 @@ ObjectState DynamicObjects::state_by_class(const TrackedObject& object,
   return state;
 }
 
-cv::Mat1b DynamicObjects::extended_mask(const DepthImage& depth,
+ObjectMask DynamicObjects::extended_mask(const DepthImage& depth,
                                         const FrameObjects& objects,
                                         const MeasuredObjects& measured,
                                         const std::vector<ObjectState>& states,
-                                        const cv::Mat1f& known_static) const {
+                                        const HalfDepth& known_static) const {
   cv::Mat1b extended(depth.mat.size(), std::uint8_t{0});
   for (std::size_t i = 0; i < states.size(); ++i) {
     if (!states[i].dynamic) continue;
@@ -191,17 +180,19 @@ cv::Mat1b DynamicObjects::extended_mask(const DepthImage& depth,
             : extend_mask(view, area, measured.depths[i], config_.extension, known_static);
     paint(patch, static_cast<std::uint8_t>(id), extended);
   }
-  return extended;
+  return ObjectMask(extended);
 }
 
-cv::Mat1b DynamicObjects::jumps(const DepthImage& depth,
+JumpImage DynamicObjects::jumps(const DepthImage& depth,
                                 std::span<const PreviousDepth> previous,
-                                const WarpedDepth& expected) const {
-  if (previous.empty() || mode_ == DynamicsMode::kMask || !config_.jump.enabled) {
-    return {depth.mat.size(), std::uint8_t{kNoJump}};
+                                const HalfDepth& expected) const {
+  if (!previous.empty() && config_.jump.enabled) {
+    if (mode_.jumps == JumpRule::kWarpedFrames) return depth_jumps(depth, expected, config_.jump);
+    if (mode_.jumps == JumpRule::kPreviousFrame) {
+      return depth_jumps(depth, previous.front().depth, config_.jump.paper_jump_m);
+    }
   }
-  if (mode_ == DynamicsMode::kFull) return depth_jumps(depth, expected, config_.jump);
-  return depth_jumps(depth, previous.front().depth, config_.jump.paper_jump_m);
+  return JumpImage(cv::Mat1b(depth.mat.size(), std::uint8_t{kNoJump}));
 }
 
 }  // namespace stillmap

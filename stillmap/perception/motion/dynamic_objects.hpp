@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -15,17 +14,12 @@
 #include "stillmap/geometry/camera.hpp"
 #include "stillmap/perception/motion/depth_jump.hpp"
 #include "stillmap/perception/motion/mask_extension.hpp"
+#include "stillmap/perception/motion/modes.hpp"
 #include "stillmap/perception/objects/categories.hpp"
 #include "stillmap/perception/objects/frame_objects.hpp"
+#include "stillmap/perception/objects/object_state.hpp"
 
 namespace stillmap {
-
-/// How much is done about what moves.
-enum class DynamicsMode : std::uint8_t {
-  kMask,   ///< what the network's masks of dynamic classes cover
-  kPaper,  ///< Fan 2020 to the letter: masks extended in their boxes, interaction, plain jumps
-  kFull,   ///< extension as configured, jumps against warped static depth, what is seen to move
-};
 
 struct InteractionConfig {
   bool enabled = true;
@@ -51,41 +45,17 @@ struct DynamicObjectsConfig {
   }
 };
 
-/// Why an object is taken as dynamic or static in a frame.
-enum class StateReason : std::uint8_t {
-  kStaticClass,   ///< static
-  kBoxesApart,    ///< static: nobody near it in the image
-  kDepthsApart,   ///< static: somebody before or behind it
-  kNotAsked,      ///< static: interaction is not judged
-  kDynamicClass,  ///< dynamic: it moves by itself
-  kTouching,      ///< dynamic: somebody is at it
-  kDepthUnknown,  ///< dynamic: somebody may be at it
-  kMoving,        ///< dynamic: it has been seen to move
-};
-[[nodiscard]] std::string_view reason_name(StateReason reason);
-
-/// What a frame takes an object for.
-struct ObjectState {
-  TrackId track;
-  Category category = Category::kStatic;
-  bool dynamic = false;
-  StateReason reason = StateReason::kStaticClass;
-  std::optional<TrackId> person;  ///< who touches it, or is before or behind it
-  PixelBox box;
-  bool filled = false;                  ///< the network has missed it
-  std::optional<DepthInterval> depths;  ///< of its mask, outliers removed
-  float median_depth_m = 0;             ///< of its mask; 0 where nothing is measured
-};
-
 /// The pixels of a frame that must not be taken as static. All of the image's size.
 struct DynamicMask {
-  cv::Mat1b raw;       ///< as the network has it: number of the dynamic object in the frame's list
-  cv::Mat1b extended;  ///< the same after the extension
-  cv::Mat1b jumps;     ///< DepthJump of pixels that suddenly have another depth
+  ObjectMask raw;       ///< the network's pixels of dynamic objects
+  ObjectMask extended;  ///< the same after the extension
+  JumpImage jumps;      ///< pixels that suddenly have another depth
 
   [[nodiscard]] bool covers(int row, int column) const {
-    return extended(row, column) != 0 || jumps(row, column) != 0;
+    return extended.mat(row, column) != 0 || jumps.mat(row, column) != 0;
   }
+  /// Both in one.
+  [[nodiscard]] Mask all() const;
 };
 
 struct DynamicsResult {
@@ -93,14 +63,15 @@ struct DynamicsResult {
   std::vector<ObjectState> states;  ///< in the order of the frame's objects
 };
 
-/// An earlier frame, for what has changed since. kPaper compares with the frame right before, pixel
-/// by pixel. For kFull one from 10 to 20 frames before, with its dynamic pixels, is best: what
-/// moves has left its place by then, and what has not changed is known to stand still. Still
-/// earlier ones tell what is behind those who were in the way then.
+/// The depth of an earlier frame, which shows what has changed since. JumpRule::kPreviousFrame
+/// compares with the frame right before, pixel by pixel. For kWarpedFrames a frame from 10 to 20
+/// frames before, with its dynamic pixels, is best: a moving object has left its place by then, and
+/// what has not changed is known to stand still. Still earlier frames show the surface behind those
+/// who were in the way then.
 struct PreviousDepth {
   DepthImage depth;
   Eigen::Isometry3d T_current_previous = Eigen::Isometry3d::Identity();
-  cv::Mat1b dynamic = {};  ///< not 0 where that frame was not static; may be empty
+  Mask dynamic = {};  ///< pixels of that frame that were not static
 };
 
 /// What a frame alone says of its objects.
@@ -109,19 +80,21 @@ struct MeasuredObjects {
   std::vector<ObjectDepths> depths;  ///< in the order of the frame's objects
 };
 
-/// Judges the objects of a frame and finds the pixels of those that move: sections 2 and 3 of
-/// Fan 2020. Keeps nothing between frames; the same input gives the same bits.
+/// Judges the objects of a frame and finds the pixels of those that move: Fan 2020, sections III-B
+/// and III-C. Keeps nothing between frames; the same input gives the same bits.
 class DynamicObjects {
  public:
   /// Throws Error for categories that make no sense.
-  DynamicObjects(const DynamicObjectsConfig& config, const CameraModel& camera, DynamicsMode mode);
+  DynamicObjects(const DynamicObjectsConfig& config,
+                 const CameraModel& camera,
+                 const DynamicsMode& mode);
 
   /// The part of the work that needs nothing of earlier frames.
   [[nodiscard]] MeasuredObjects measure(const DepthImage& depth, const FrameObjects& objects) const;
 
-  /// `measured`: what measure() says of the same. `previous`: earlier frames, the best first;
-  /// without any nothing has jumped. kPaper needs one, and no motion of it. `moving`: tracks known
-  /// to move, dynamic in kFull whoever is near.
+  /// `measured` is the result of measure() for the same frame. `previous` are earlier frames, the
+  /// best first; without any, no pixel has jumped. JumpRule::kPreviousFrame needs one, and no motion
+  /// of it. `moving` are the tracks known to move: dynamic where the mode judges by motion.
   [[nodiscard]] DynamicsResult judge(const DepthImage& depth,
                                      const FrameObjects& objects,
                                      const MeasuredObjects& measured,
@@ -144,17 +117,17 @@ class DynamicObjects {
                                                       std::span<const TrackId> moving) const;
   [[nodiscard]] ObjectState state_by_class(const TrackedObject& object,
                                            const ObjectDepths& depths) const;
-  [[nodiscard]] cv::Mat1b extended_mask(const DepthImage& depth,
+  [[nodiscard]] ObjectMask extended_mask(const DepthImage& depth,
                                         const FrameObjects& objects,
                                         const MeasuredObjects& measured,
                                         const std::vector<ObjectState>& states,
-                                        const cv::Mat1f& known_static) const;
-  [[nodiscard]] cv::Mat1b jumps(const DepthImage& depth,
+                                        const HalfDepth& known_static) const;
+  [[nodiscard]] JumpImage jumps(const DepthImage& depth,
                                 std::span<const PreviousDepth> previous,
-                                const WarpedDepth& expected) const;
+                                const HalfDepth& expected) const;
 
   DynamicObjectsConfig config_;
-  DynamicsMode mode_;
+  DynamicsMode mode_;  // its row of the table
   CategoryTable categories_;
   DepthWarper warper_;
 };

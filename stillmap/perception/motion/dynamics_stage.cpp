@@ -3,23 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
+#include <deque>
 #include <utility>
 
 #include <opencv2/imgproc.hpp>
 
-#include "stillmap/core/error.hpp"
-
 namespace stillmap {
 namespace {
 
-DynamicsMode mode_of(const DynamicsConfig& config) {
-  return config.mode == "mask"    ? DynamicsMode::kMask
-         : config.mode == "paper" ? DynamicsMode::kPaper
-                                  : DynamicsMode::kFull;
-}
-
-/// Where there is something dynamic.
 std::vector<PixelBox> dynamic_boxes(const std::vector<ObjectState>& states) {
   std::vector<PixelBox> boxes;
   for (const ObjectState& state : states) {
@@ -28,97 +19,120 @@ std::vector<PixelBox> dynamic_boxes(const std::vector<ObjectState>& states) {
   return boxes;
 }
 
-cv::Mat1b covered(const DynamicMask& mask) {
-  cv::Mat1b all;
-  cv::bitwise_or(mask.extended, mask.jumps, all);
-  return all;
-}
-
-cv::Mat1b widened(const cv::Mat1b& mask, double margin_px) {
+Mask widened(const Mask& mask, double margin_px) {
   const int side = 2 * static_cast<int>(std::lround(margin_px)) + 1;
   if (side <= 1) return mask;
   cv::Mat1b wide;
-  cv::dilate(mask, wide, cv::getStructuringElement(cv::MORPH_RECT, cv::Size(side, side)));
-  return wide;
+  cv::dilate(mask.mat, wide, cv::getStructuringElement(cv::MORPH_RECT, cv::Size(side, side)));
+  return Mask(wide);
 }
 
-}  // namespace
+class JudgingStage final : public DynamicsStage {
+ public:
+  JudgingStage(const DynamicsConfig& config,
+               const DynamicsMode& mode,
+               const CameraModel& camera,
+               std::uint32_t seed)
+      : config_(config),
+        jumps_(mode.jumps),
+        objects_(config.objects, camera, mode),
+        motions_(config.motion, camera),
+        filter_(config.features, camera, mode, seed) {}
 
-ObjectTrackerConfig DynamicsConfig::object_tracking() const {
-  ObjectTrackerConfig tracking = tracker;
-  if (mode == "paper") tracking.min_sightings = 1;
-  if (!fill_boxes) tracking.search_frames = 0;
-  return tracking;
-}
+  [[nodiscard]] MeasuredObjects measure(const RgbdFrame& frame,
+                                        const FrameObjects& objects) const override {
+    return objects_.measure(frame.depth, objects);
+  }
+  [[nodiscard]] FrameDynamics judge(
+      const RgbdFrame& frame,
+      FrameObjects objects,
+      const MeasuredObjects& measured,
+      const std::optional<Eigen::Isometry3d>& T_odometry_camera_expected) const override;
+  [[nodiscard]] FilteredFeatures filter(
+      const RgbdFrame& frame,
+      Features features,
+      const FrameDynamics& dynamics,
+      const std::optional<Eigen::Isometry3d>& T_odometry_camera_expected) override;
+  [[nodiscard]] std::vector<ObjectState> with_motion(const RgbdFrame& frame,
+                                                     const Eigen::Isometry3d& T_odometry_camera,
+                                                     const FrameDynamics& dynamics) override;
+  void remember(const RgbdFrame& frame,
+                const Eigen::Isometry3d& T_odometry_camera,
+                const FrameDynamics& dynamics) override;
+  void forget() override;
 
-DynamicsStage::DynamicsStage(const DynamicsConfig& config,
-                             const CameraModel& camera,
-                             std::uint32_t seed)
-    : config_(config), motions_(config.motion, camera) {
-  if (config.mode == "off") return;
-  objects_.emplace(config.objects, camera, mode_of(config));
-  filter_.emplace(config.features, camera, mode_of(config), seed);
-}
+ private:
+  /// A remembered frame.
+  struct PastView {
+    DepthImage depth;
+    Eigen::Isometry3d T_odometry_camera;
+    Mask dynamic;
+    std::int64_t number = 0;
+  };
+  [[nodiscard]] std::vector<PreviousDepth> previous(
+      const std::optional<Eigen::Isometry3d>& T_odometry_camera) const;
+  [[nodiscard]] const PastView* past_view(std::int64_t frames_ago) const;
+  [[nodiscard]] const PastView* first_since_lost() const;
 
-// The newest frame that is at least so old.
-const DynamicsStage::PastFrame* DynamicsStage::past_frame(std::int64_t frames_ago) const {
-  for (auto frame = past_.rbegin(); frame != past_.rend(); ++frame) {
-    if (number_ - frame->number >= frames_ago) return &*frame;
+  DynamicsConfig config_;
+  JumpRule jumps_;
+  DynamicObjects objects_;
+  MotionEstimator motions_;
+  FeatureFilter filter_;
+  std::optional<PastView> last_;
+  std::deque<PastView> past_;     // every few frames, the newest last
+  std::int64_t number_ = 0;       // of frames remembered
+  std::int64_t found_again_ = 0;  // number of the first of them since tracking was lost
+  FeaturesPtr features_;          // of the last frame, as they were extracted
+};
+
+// The newest view that is at least that old.
+const JudgingStage::PastView* JudgingStage::past_view(std::int64_t frames_ago) const {
+  for (auto view = past_.rbegin(); view != past_.rend(); ++view) {
+    if (number_ - view->number >= frames_ago) return &*view;
   }
   return nullptr;
 }
 
-const DynamicsStage::PastFrame* DynamicsStage::first_since_lost() const {
-  const auto frame = std::ranges::find_if(
-      past_, [&](const PastFrame& past) { return past.number >= found_again_; });
-  return frame != past_.end() ? &*frame : nullptr;
+const JudgingStage::PastView* JudgingStage::first_since_lost() const {
+  const auto view = std::ranges::find_if(
+      past_, [&](const PastView& past) { return past.number >= found_again_; });
+  return view != past_.end() ? &*view : nullptr;
 }
 
-std::vector<PreviousDepth> DynamicsStage::previous(
-    const std::optional<Eigen::Isometry3d>& T_world_camera) const {
+std::vector<PreviousDepth> JudgingStage::previous(
+    const std::optional<Eigen::Isometry3d>& T_odometry_camera) const {
   std::vector<PreviousDepth> frames;
-  if (config_.mode == "paper" && last_) frames.push_back({last_->depth});
-  if (config_.mode != "full" || !T_world_camera || past_.empty()) return frames;
-  const auto add = [&](const PastFrame& past) {
+  if (jumps_ == JumpRule::kPreviousFrame && last_) frames.push_back({last_->depth});
+  if (jumps_ != JumpRule::kWarpedFrames || !T_odometry_camera || past_.empty()) return frames;
+  const auto add = [&](const PastView* past) {
+    if (past == nullptr) return;
     frames.push_back(
-        {past.view.depth, T_world_camera->inverse() * past.view.T_world_camera, past.dynamic});
+        {past->depth, T_odometry_camera->inverse() * past->T_odometry_camera, past->dynamic});
   };
-  for (const int age : {1, 2, 4}) {
-    const PastFrame* past = past_frame(std::int64_t{age} * config_.compare_frames);
-    if (past != nullptr) add(*past);
-  }
-  if (number_ - found_again_ < config_.compare_frames) {
-    const PastFrame* first = first_since_lost();
-    if (first != nullptr) add(*first);
-  }
+  for (const int age : {1, 2, 4}) add(past_view(std::int64_t{age} * config_.compare_frames));
+  if (number_ - found_again_ < config_.compare_frames) add(first_since_lost());
   return frames;
 }
 
-MeasuredObjects DynamicsStage::measure(const RgbdFrame& frame, const FrameObjects& objects) const {
-  STILLMAP_CHECK(enabled());
-  return objects_->measure(frame.depth, objects);
-}
-
-FrameDynamics DynamicsStage::judge(
+FrameDynamics JudgingStage::judge(
     const RgbdFrame& frame,
     FrameObjects objects,
     const MeasuredObjects& measured,
-    const std::optional<Eigen::Isometry3d>& T_world_camera_expected) const {
-  STILLMAP_CHECK(enabled());
+    const std::optional<Eigen::Isometry3d>& T_odometry_camera_expected) const {
   FrameDynamics dynamics;
-  dynamics.judged = objects_->judge(
-      frame.depth, objects, measured, previous(T_world_camera_expected), motions_.moving());
+  dynamics.judged = objects_.judge(
+      frame.depth, objects, measured, previous(T_odometry_camera_expected), motions_.moving());
   dynamics.objects = std::move(objects);
-  dynamics.excluded = widened(covered(dynamics.judged.mask), config_.feature_margin_px);
+  dynamics.excluded = widened(dynamics.judged.mask.all(), config_.feature_margin_px);
   return dynamics;
 }
 
-FilteredFeatures DynamicsStage::filter(
+FilteredFeatures JudgingStage::filter(
     const RgbdFrame& frame,
     Features features,
     const FrameDynamics& dynamics,
-    const std::optional<Eigen::Isometry3d>& T_world_camera_expected) {
-  STILLMAP_CHECK(enabled());
+    const std::optional<Eigen::Isometry3d>& T_odometry_camera_expected) {
   const FeaturesPtr current = std::make_shared<const Features>(std::move(features));
   FeatureScene scene{*current,
                      frame.depth,
@@ -126,25 +140,91 @@ FilteredFeatures DynamicsStage::filter(
                      std::exchange(features_, current),
                      std::nullopt,
                      frame.id};
-  if (T_world_camera_expected && last_) {
-    scene.T_current_previous = T_world_camera_expected->inverse() * last_->T_world_camera;
+  if (T_odometry_camera_expected && last_) {
+    scene.T_current_previous = T_odometry_camera_expected->inverse() * last_->T_odometry_camera;
   }
-  return filter_->filter(scene);
+  return filter_.filter(scene);
 }
 
-void DynamicsStage::remember(const RgbdFrame& frame,
-                             const Eigen::Isometry3d& T_world_camera,
-                             FrameDynamics& dynamics) {
-  learn_motions(frame, T_world_camera, dynamics);
-  last_ = {frame.depth, T_world_camera};
+std::vector<ObjectState> JudgingStage::with_motion(const RgbdFrame& frame,
+                                                   const Eigen::Isometry3d& T_odometry_camera,
+                                                   const FrameDynamics& dynamics) {
+  std::vector<ObjectState> states = dynamics.judged.states;
+  std::vector<Motion> motions =
+      motions_.update(dynamics.objects, frame.depth, states, T_odometry_camera);
+  for (std::size_t i = 0; i < states.size(); ++i) states[i].motion = std::move(motions[i]);
+  return states;
+}
+
+void JudgingStage::remember(const RgbdFrame& frame,
+                            const Eigen::Isometry3d& T_odometry_camera,
+                            const FrameDynamics& dynamics) {
+  last_ = {frame.depth, T_odometry_camera, {}, number_};
   // A third of the age's precision is enough, and a third of the memory.
   const int step = std::max(1, config_.compare_frames / 3);
   if ((number_ - found_again_) % step == 0) {
-    past_.push_back({*last_, covered(dynamics.judged.mask), number_});
+    past_.push_back({frame.depth, T_odometry_camera, dynamics.judged.mask.all(), number_});
   }
   ++number_;
   const std::int64_t oldest = number_ - std::int64_t{4} * config_.compare_frames - step;
   while (!past_.empty() && past_.front().number < oldest) past_.pop_front();
+}
+
+void JudgingStage::forget() {
+  last_.reset();
+  features_.reset();
+  found_again_ = number_;
+}
+
+}  // namespace
+
+ObjectTrackerConfig DynamicsConfig::object_tracking() const {
+  ObjectTrackerConfig tracking = tracker;
+  if (dynamics_mode(mode).fills_after_one_sighting) tracking.min_sightings = 1;
+  if (!fill_boxes) tracking.search_frames = 0;
+  return tracking;
+}
+
+MeasuredObjects DynamicsStage::measure(const RgbdFrame& /*frame*/,
+                                       const FrameObjects& /*objects*/) const {
+  return {};
+}
+
+FrameDynamics DynamicsStage::judge(
+    const RgbdFrame& /*frame*/,
+    FrameObjects /*objects*/,
+    const MeasuredObjects& /*measured*/,
+    const std::optional<Eigen::Isometry3d>& /*T_odometry_camera_expected*/) const {
+  return {};
+}
+
+FilteredFeatures DynamicsStage::filter(
+    const RgbdFrame& /*frame*/,
+    Features features,
+    const FrameDynamics& /*dynamics*/,
+    const std::optional<Eigen::Isometry3d>& /*T_odometry_camera_expected*/) {
+  return {std::move(features), {}, {}};
+}
+
+std::vector<ObjectState> DynamicsStage::with_motion(
+    const RgbdFrame& /*frame*/,
+    const Eigen::Isometry3d& /*T_odometry_camera*/,
+    const FrameDynamics& /*dynamics*/) {
+  return {};
+}
+
+void DynamicsStage::remember(const RgbdFrame& /*frame*/,
+                             const Eigen::Isometry3d& /*T_odometry_camera*/,
+                             const FrameDynamics& /*dynamics*/) {}
+
+void DynamicsStage::forget() {}
+
+std::unique_ptr<DynamicsStage> make_dynamics_stage(const DynamicsConfig& config,
+                                                   const CameraModel& camera,
+                                                   std::uint32_t seed) {
+  const DynamicsMode& mode = dynamics_mode(config.mode);
+  if (!mode.judges) return std::make_unique<DynamicsStage>();
+  return std::make_unique<JudgingStage>(config, mode, camera, seed);
 }
 
 }  // namespace stillmap

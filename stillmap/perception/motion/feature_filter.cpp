@@ -55,20 +55,21 @@ FeatureVerdict verdict_in_box(const std::optional<MatchVerdict>& match_verdict) 
 
 FeatureFilter::FeatureFilter(const FeatureFilterConfig& config,
                              const CameraModel& camera,
-                             DynamicsMode mode,
+                             const DynamicsMode& mode,
                              std::uint32_t seed)
-    : config_(config), camera_(camera), mode_(mode), seed_(seed) {
-  if (mode == DynamicsMode::kPaper) {
+    : config_(config),
+      camera_(camera),
+      drops_missing_depth_(mode.depth_stability == DepthStabilityRule::kDrop),
+      seed_(seed) {
+  if (mode.depth_stability == DepthStabilityRule::kNone) config_.depth_stability.enabled = false;
+  if (mode.depth_stability == DepthStabilityRule::kDrop) {
     config_.depth_stability.relative = false;
     config_.depth_stability.rejected = "drop";
   }
-  if (mode == DynamicsMode::kFull && !config_.static_matches.in_full) {
-    config_.static_matches.enabled = false;
-  }
-  if (mode == DynamicsMode::kMask) {
-    config_.depth_stability.enabled = false;
-    config_.static_matches.enabled = false;
-  }
+  const bool asked = mode.static_matches == StaticMatchRule::kJudge ||
+                     (mode.static_matches == StaticMatchRule::kConfigured &&
+                      config_.static_matches.in_full);
+  if (!asked) config_.static_matches.enabled = false;
 }
 
 FilteredFeatures FeatureFilter::filter(const FeatureScene& scene) const {
@@ -147,7 +148,7 @@ bool FeatureFilter::dropped(FeatureVerdict verdict) const {
     case FeatureVerdict::kUnstableDepth:
       return config_.depth_stability.rejected == "drop";
     case FeatureVerdict::kMissingDepth:
-      return mode_ == DynamicsMode::kPaper;
+      return drops_missing_depth_;
     case FeatureVerdict::kStable:
     case FeatureVerdict::kStaticInBox:
       break;

@@ -9,36 +9,27 @@
 
 #include "stillmap/core/ids.hpp"
 #include "stillmap/core/images.hpp"
+#include "stillmap/core/status.hpp"
 #include "stillmap/core/trajectory.hpp"
 #include "stillmap/geometry/camera.hpp"
 #include "stillmap/perception/detections/detections.hpp"
 #include "stillmap/perception/motion/depth_stability.hpp"
-#include "stillmap/perception/motion/dynamic_objects.hpp"
+#include "stillmap/perception/motion/modes.hpp"
 #include "stillmap/perception/motion/static_matches.hpp"
 #include "stillmap/slam/features/features.hpp"
 
 namespace stillmap {
-
-/// What a feature off the masks is taken for. Of several, the later in kDynamic, kUnstableDepth,
-/// kMissingDepth, kStaticInBox, kStable gives way to the earlier.
-enum class FeatureVerdict : std::uint8_t {
-  kStable,
-  kMissingDepth,
-  kUnstableDepth,
-  kDynamic,      ///< in the box of something dynamic, and not seen to stand still
-  kStaticInBox,  ///< in such a box, and seen to stand still
-};
 
 struct RejectedFeature {
   Eigen::Vector2f raw_px;
   FeatureVerdict verdict = FeatureVerdict::kStable;
 };
 
-/// The features that may tell the pose, and what has become of all.
+/// The features that may tell the pose, and the verdicts on all.
 struct FilteredFeatures {
   Features features;
-  std::vector<FeatureVerdict> verdicts;  ///< of `features`
-  std::vector<RejectedFeature> dropped;  ///< of the others
+  std::vector<FeatureVerdict> verdicts;  ///< of `features`; empty where nothing is judged
+  std::vector<RejectedFeature> dropped;  ///< the others
 };
 
 /// The features of a frame, with what it takes to judge them.
@@ -62,15 +53,15 @@ struct FeatureFilterConfig {
   }
 };
 
-/// Judges features by their depth and, in the boxes of what moves, by their motion: sections 6 and
-/// 7 of the method. kMask judges nothing, kPaper all; kFull leaves the boxes alone unless told to
-/// judge them, and keeps features without depth. A feature in a box that has no match in the frame
-/// before stays. Keeps nothing between frames; the same input and seed give the same bits.
+/// Judges features by their depth and, in the boxes of dynamic objects, by their motion: Fan 2020,
+/// sections III-E and III-F, as far as the mode asks for it. A feature in a box that has no match
+/// in the frame before stays. Keeps nothing between frames; the same input and seed give the same
+/// bits.
 class FeatureFilter {
  public:
   FeatureFilter(const FeatureFilterConfig& config,
                 const CameraModel& camera,
-                DynamicsMode mode,
+                const DynamicsMode& mode,
                 std::uint32_t seed);
 
   [[nodiscard]] FilteredFeatures filter(const FeatureScene& scene) const;
@@ -84,7 +75,7 @@ class FeatureFilter {
 
   FeatureFilterConfig config_;
   CameraModel camera_;
-  DynamicsMode mode_;
+  bool drops_missing_depth_;
   std::uint32_t seed_;
 };
 

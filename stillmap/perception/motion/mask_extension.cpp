@@ -67,7 +67,7 @@ PixelPatch extend_mask(const ObjectView& object,
                        const MaskArea& area,
                        const ObjectDepths& depths,
                        const MaskExtensionConfig& config,
-                       const cv::Mat1f& known_static) {
+                       const HalfDepth& known_static) {
   STILLMAP_CHECK(area.pixels == 0 || object.mask.mat.size() == object.depth.mat.size());
   if (config.variant == "paper") return paper_extension(object, area, depths, config);
   if (area.pixels == 0) return {};

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "stillmap/core/fields.hpp"
+#include "stillmap/core/images.hpp"
 #include "stillmap/perception/objects/object_depth.hpp"
 #include "stillmap/perception/objects/object_view.hpp"
 
@@ -92,8 +93,8 @@ struct MaskExtensionConfig {
 /// are mostly something else keep their mask alone. Holes without depth inside are filled. Depth is
 /// looked at in every second row and column. A mask without any depth is kept as it is.
 ///
-/// `known_static`, if not empty, has the depth of what is known to stand still, for every second
-/// pixel of every second row, 0 where nothing is: pixels of that depth do not join (`connected`).
+/// `known_static`, if not empty, has the depth of what is known to stand still: pixels of that depth
+/// do not join (`connected`).
 ///
 /// `area` is that of the object's id in `object.mask`, of which `object.depth` has the size.
 /// The patch may be empty.
@@ -101,7 +102,7 @@ struct MaskExtensionConfig {
                                      const MaskArea& area,
                                      const ObjectDepths& depths,
                                      const MaskExtensionConfig& config,
-                                     const cv::Mat1f& known_static = {});
+                                     const HalfDepth& known_static = {});
 
 /// The mask of an object as it is.
 [[nodiscard]] PixelPatch mask_patch(const ObjectView& object, const MaskArea& area);

@@ -36,7 +36,7 @@ struct Scene {
   }
 
   [[nodiscard]] PixelPatch extended(const MaskExtensionConfig& config,
-                                    const cv::Mat1f& known_static = {}) const {
+                                    const HalfDepth& known_static = {}) const {
     const MaskArea area = mask_areas(mask)[kId];
     const ObjectDepths depths = object_depths(depth, mask, kId, area, outlier_rule(config));
     return extend_mask({depth, mask, kId, kBox}, area, depths, config, known_static);

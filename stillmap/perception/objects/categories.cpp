@@ -63,16 +63,4 @@ Category CategoryTable::of(std::string_view class_name) const {
   return place != entries_.end() && place->name == name ? place->category : Category::kStatic;
 }
 
-std::string_view category_name(Category category) {
-  switch (category) {
-    case Category::kDynamic:
-      return "dynamic";
-    case Category::kPotentiallyDynamic:
-      return "potentially dynamic";
-    case Category::kStatic:
-      break;
-  }
-  return "static";
-}
-
 }  // namespace stillmap

@@ -7,15 +7,9 @@
 #include <vector>
 
 #include "stillmap/core/fields.hpp"
+#include "stillmap/perception/objects/object_state.hpp"
 
 namespace stillmap {
-
-/// What a class of objects is to a map of what stands still (Fan 2020, section III).
-enum class Category : std::uint8_t {
-  kStatic,              ///< stays where it is
-  kPotentiallyDynamic,  ///< moves when somebody moves it
-  kDynamic,             ///< moves by itself
-};
 
 /// The classes of two categories, names of COCO (or VOC's for the same) separated by commas; every
 /// other class is static.
@@ -58,7 +52,5 @@ class CategoryTable {
   };
   std::vector<Entry> entries_;  // by name
 };
-
-[[nodiscard]] std::string_view category_name(Category category);
 
 }  // namespace stillmap

@@ -9,19 +9,9 @@
 
 #include "stillmap/core/images.hpp"
 #include "stillmap/perception/detections/detections.hpp"
+#include "stillmap/perception/objects/object_state.hpp"
 
 namespace stillmap {
-
-/// From the nearest to the farthest depth of something, metres.
-struct DepthInterval {
-  float min_m = 0;
-  float max_m = 0;
-
-  [[nodiscard]] bool overlaps(const DepthInterval& other) const {
-    return !(max_m < other.min_m || other.max_m < min_m);
-  }
-  [[nodiscard]] bool contains(float depth_m) const { return depth_m >= min_m && depth_m <= max_m; }
-};
 
 /// Where in the image the pixels of an id are.
 struct MaskArea {

@@ -143,14 +143,14 @@ void OrbExtractor::place_in_space(const DepthImage& depth, Features& features) c
 
 Features OrbExtractor::extract(ImageCorners corners,
                                const DepthImage& depth,
-                               const cv::Mat1b& excluded) const {
+                               const Mask& excluded) const {
   STILLMAP_CHECK(depth.mat.cols == camera_.width_px && depth.mat.rows == camera_.height_px);
-  STILLMAP_CHECK(excluded.empty() || excluded.size() == depth.mat.size());
+  STILLMAP_CHECK(excluded.empty() || excluded.mat.size() == depth.mat.size());
   STILLMAP_CHECK(corners.levels.size() == levels_.size());
   Features features;
   for (std::size_t i = 0; i < levels_.size(); ++i) {
     ImageCorners::Level& level = corners.levels[i];
-    if (!excluded.empty()) remove_excluded(level.corners, excluded, level.image.size());
+    if (!excluded.empty()) remove_excluded(level.corners, excluded.mat, level.image.size());
     append(i, level, spread_evenly(std::move(level.corners), levels_[i].feature_count), features);
   }
   place_in_space(depth, features);

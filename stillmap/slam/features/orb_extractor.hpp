@@ -58,16 +58,16 @@ class OrbExtractor {
   [[nodiscard]] ImageCorners corners(const GrayImage& gray) const;
 
   /// Features at some of the corners, at ideal and raw pixels, each with the depth that `depth`,
-  /// of the camera's size, has there. None where `excluded`, which may be empty, is not 0: then the
-  /// rest of the image gets all of them.
+  /// of the camera's size, has there. None at a pixel of `excluded`: the rest of the image
+  /// gets all of them.
   [[nodiscard]] Features extract(ImageCorners corners,
                                  const DepthImage& depth,
-                                 const cv::Mat1b& excluded = {}) const;
+                                 const Mask& excluded = {}) const;
 
   /// Both at once.
   [[nodiscard]] Features extract(const GrayImage& gray,
                                  const DepthImage& depth,
-                                 const cv::Mat1b& excluded = {}) const {
+                                 const Mask& excluded = {}) const {
     return extract(corners(gray), depth, excluded);
   }
 

@@ -6,16 +6,10 @@
 #include <Eigen/Geometry>
 
 #include "stillmap/core/ids.hpp"
+#include "stillmap/core/status.hpp"
 #include "stillmap/slam/features/features.hpp"
 
 namespace stillmap {
-
-enum class TrackingStatus {
-  kInitialized,  ///< the first frame of a map: its camera is the world's origin
-  kTracked,
-  kRelocalized,  ///< found again after having been lost
-  kLost,         ///< no pose; the frame is marked, nothing is invented
-};
 
 /// What tracking says of one frame.
 struct TrackedFrame {

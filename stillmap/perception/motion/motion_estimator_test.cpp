@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "stillmap/perception/motion/motion_state.hpp"
+#include "stillmap/perception/motion/motion_estimator.hpp"
 
 #include <array>
 #include <cmath>
@@ -65,7 +65,7 @@ Snapshot look(int frame,
   return shot;
 }
 
-ObjectMotion feed(MotionStates& states, const Snapshot& shot) {
+ObjectMotion feed(MotionEstimator& states, const Snapshot& shot) {
   return states.update(shot.objects, shot.depth, shot.states, shot.T_world_camera).at(0);
 }
 
@@ -90,8 +90,8 @@ TEST(RobustVelocity, OfAStraightWayWithAnOutlier) {
   EXPECT_NEAR(found.error, 0.01 / std::sqrt(0.825), 1e-9);
 }
 
-TEST(MotionStates, AStillObjectStaysStillWhateverTheCameraDoes) {
-  MotionStates states({}, builtin_camera("tum_fr3"));
+TEST(MotionEstimator, AStillObjectStaysStillWhateverTheCameraDoes) {
+  MotionEstimator states({}, builtin_camera("tum_fr3"));
   for (int i = 0; i < 60; ++i) {
     const ObjectMotion motion = feed(states, look(i, {0.1, 0.0, 2.5}, camera_at(i)));
     EXPECT_EQ(motion.motion, i < 4 ? Motion::kUnknown : Motion::kStill) << i;
@@ -101,8 +101,8 @@ TEST(MotionStates, AStillObjectStaysStillWhateverTheCameraDoes) {
   EXPECT_TRUE(states.moving().empty());
 }
 
-TEST(MotionStates, AMovingObjectHasItsVelocityInTheWorld) {
-  MotionStates states({}, builtin_camera("tum_fr3"));
+TEST(MotionEstimator, AMovingObjectHasItsVelocityInTheWorld) {
+  MotionEstimator states({}, builtin_camera("tum_fr3"));
   ObjectMotion motion;
   const Eigen::Vector3d velocity(0.4, 0.0, 0.3);
   for (int i = 0; i < 20; ++i) {
@@ -114,8 +114,8 @@ TEST(MotionStates, AMovingObjectHasItsVelocityInTheWorld) {
   EXPECT_EQ(states.moving(), std::vector<TrackId>{TrackId(1)});
 }
 
-TEST(MotionStates, PushedThenRollingThenStill) {
-  MotionStates states({}, builtin_camera("tum_fr3"));
+TEST(MotionEstimator, PushedThenRollingThenStill) {
+  MotionEstimator states({}, builtin_camera("tum_fr3"));
   Eigen::Vector3d place(-0.3, 0, 2.5);
   std::array<Motion, 60> seen{};
   for (int i = 0; i < 60; ++i) {
@@ -133,8 +133,8 @@ TEST(MotionStates, PushedThenRollingThenStill) {
   EXPECT_EQ(seen[55], Motion::kStill);
 }
 
-TEST(MotionStates, AFlickeringMaskIsNoMotion) {
-  MotionStates states({}, builtin_camera("tum_fr3"));
+TEST(MotionEstimator, AFlickeringMaskIsNoMotion) {
+  MotionEstimator states({}, builtin_camera("tum_fr3"));
   for (int i = 0; i < 60; ++i) {
     const int jitter = (i * 7919) % 13 - 6;
     const ObjectMotion motion =
@@ -143,12 +143,12 @@ TEST(MotionStates, AFlickeringMaskIsNoMotion) {
   }
 }
 
-TEST(MotionStates, FarAwayItTakesMoreToCountAsMoving) {
+TEST(MotionEstimator, FarAwayItTakesMoreToCountAsMoving) {
   MotionStateConfig config;
   config.depth_noise_per_m = 0.01;
   const Eigen::Vector3d velocity(0.4, 0, 0);
   for (const double distance : {1.0, 5.0}) {
-    MotionStates states(config, builtin_camera("tum_fr3"));
+    MotionEstimator states(config, builtin_camera("tum_fr3"));
     ObjectMotion motion;
     for (int i = 0; i < 15; ++i) {
       motion = feed(states,
@@ -160,8 +160,8 @@ TEST(MotionStates, FarAwayItTakesMoreToCountAsMoving) {
   }
 }
 
-TEST(MotionStates, WithoutDepthOrWhenFilledInNothingIsKnown) {
-  MotionStates states({}, builtin_camera("tum_fr3"));
+TEST(MotionEstimator, WithoutDepthOrWhenFilledInNothingIsKnown) {
+  MotionEstimator states({}, builtin_camera("tum_fr3"));
   for (int i = 0; i < 10; ++i) {
     Snapshot shot = look(i, {0.1 * i, 0, 2.0}, camera_at(i));
     shot.states[0].depths.reset();
@@ -197,7 +197,7 @@ MotionScore score_motion(const TruthSequence& data) {
   const TumSequence& sequence = data.sequence();
   const Trajectory poses = read_trajectory(*sequence.groundtruth_file());
   const DynamicObjects dynamics({}, sequence.camera(), DynamicsMode::kMask);
-  MotionStates states({}, sequence.camera());
+  MotionEstimator states({}, sequence.camera());
   ObjectTracker tracker({}, FillRule::kCausal);
   MotionScore score;
   for (std::uint32_t i = 0; i < sequence.size(); ++i) {
@@ -225,7 +225,7 @@ MotionScore score_motion(const TruthSequence& data) {
   return score;
 }
 
-TEST(MotionStates, TellPeopleWhoWalkFromWhatStandsOnTruth) {
+TEST(MotionEstimator, TellPeopleWhoWalkFromWhatStandsOnTruth) {
   for (const char* name : {"twin_walking_xyz", "fr1_xyz_walkers"}) {
     const std::unique_ptr<TruthSequence> data = TruthSequence::open(shared_data_folder() / name);
     if (!data) GTEST_SKIP() << "the shared test data is absent (set STILLMAP_DATA)";

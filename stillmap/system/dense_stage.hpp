@@ -2,27 +2,24 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 
 #include "stillmap/concurrency/job_ledger.hpp"
 #include "stillmap/concurrency/stage_probe.hpp"
-#include "stillmap/concurrency/worker.hpp"
 #include "stillmap/dense/static_map.hpp"
+#include "stillmap/perception/motion/dynamics_stage.hpp"
 #include "stillmap/session/session.hpp"
 
 namespace stillmap {
 
-/// Makes the dense map's views: of key frames and of some frames between them.
-class ViewStage {
+/// Makes the dense map's views, of key frames and of some frames between them, and the map of them.
+class DenseStage {
  public:
-  /// `config` is resolved. Views are in the session some frames after they were begun.
-  ViewStage(const CloudConfig& config, const CameraModel& camera, const StageOptions& options);
+  /// `config` is resolved. Views reach the session some frames after they were begun.
+  DenseStage(const CloudConfig& config, const CameraModel& camera, const StageOptions& options);
 
-  /// Views that have not been begun are dropped.
-  ~ViewStage() { worker_.reset(); }
-  ViewStage(const ViewStage&) = delete;
-  ViewStage& operator=(const ViewStage&) = delete;
+  /// A stage with the same pending views, whose own work runs inline.
+  [[nodiscard]] DenseStage inline_copy() const;
 
   /// A recorded frame with masks of its own.
   struct Candidate {
@@ -31,10 +28,19 @@ class ViewStage {
     std::size_t record;  ///< its place in the session's frames
     bool is_keyframe;
   };
-  /// Makes its view if its turn has come. To be called in the order of the records.
+  /// Begins its view if its turn has come. To be called in the order of the records.
   void add(const Candidate& candidate, std::int64_t frame_number);
 
+  /// Adds the views that are due to the session, as far as they tell something new.
   void collect_due(Session& session, std::int64_t frame_number);
+
+  /// The map of the posed views, on that many threads; the same with any number.
+  [[nodiscard]] PointCloud map_of(std::span<const PosedView> views, std::size_t threads) const {
+    return static_map(views, camera_, config_, threads);
+  }
+
+  /// Whether views must know free space.
+  [[nodiscard]] bool needs_free_space() const { return config_.free_space == "on"; }
 
  private:
   [[nodiscard]] bool is_due(std::int64_t record) const;
@@ -44,7 +50,6 @@ class ViewStage {
   CameraModel camera_;
   cv::Mat2f rays_;
   std::optional<std::int64_t> last_;  // record of the last view's frame, at first that before all
-  std::unique_ptr<Worker> worker_;
   JobLedger<ViewRecord> jobs_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "stillmap/perception/motion/motion_state.hpp"
+#include "stillmap/perception/motion/motion_estimator.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -61,20 +61,6 @@ bool reaches_border(const PixelBox& box, cv::Size image) {
 
 }  // namespace
 
-std::string_view motion_name(Motion motion) {
-  switch (motion) {
-    case Motion::kStill:
-      return "still";
-    case Motion::kMoving:
-      return "moving";
-    case Motion::kMovedBySomeone:
-      return "moved by someone";
-    case Motion::kUnknown:
-      break;
-  }
-  return "unknown";
-}
-
 RobustVelocity robust_velocity(std::span<const double> stamps_s,
                                std::span<const Eigen::Vector3d> positions,
                                double least_noise_m) {
@@ -107,10 +93,10 @@ RobustVelocity robust_velocity(std::span<const double> stamps_s,
   return result;
 }
 
-MotionStates::MotionStates(const MotionStateConfig& config, const CameraModel& camera)
+MotionEstimator::MotionEstimator(const MotionStateConfig& config, const CameraModel& camera)
     : config_(config), camera_(camera) {}
 
-MotionStates::Track& MotionStates::track_of(TrackId id) {
+MotionEstimator::Track& MotionEstimator::track_of(TrackId id) {
   const auto place = std::ranges::lower_bound(tracks_, id, {}, &Track::id);
   if (place != tracks_.end() && place->id == id) return *place;
   Track fresh;
@@ -118,7 +104,7 @@ MotionStates::Track& MotionStates::track_of(TrackId id) {
   return *tracks_.insert(place, std::move(fresh));
 }
 
-std::optional<MotionStates::Position> MotionStates::position_of(const View& view,
+std::optional<MotionEstimator::Position> MotionEstimator::position_of(const View& view,
                                                                 const TrackedObject& object,
                                                                 const ObjectState& state) const {
   if (!state.depths || view.objects.mask.mat.empty()) return std::nullopt;
@@ -134,7 +120,7 @@ std::optional<MotionStates::Position> MotionStates::position_of(const View& view
                   surface_of(view, object, state)};
 }
 
-std::vector<Eigen::Vector3d> MotionStates::surface_of(const View& view,
+std::vector<Eigen::Vector3d> MotionEstimator::surface_of(const View& view,
                                                       const TrackedObject& object,
                                                       const ObjectState& state) const {
   const cv::Rect area = pixels_of(object.detection.box, view.depth.mat.size());
@@ -153,7 +139,7 @@ std::vector<Eigen::Vector3d> MotionStates::surface_of(const View& view,
   return points;
 }
 
-double MotionStates::vacated(const Position& old, const View& view, int id) const {
+double MotionEstimator::vacated(const Position& old, const View& view, int id) const {
   const Eigen::Isometry3d T_camera_world = view.T_world_camera.inverse();
   int there = 0, gone = 0;
   for (const Eigen::Vector3d& p_world : old.surface) {
@@ -175,7 +161,7 @@ double MotionStates::vacated(const Position& old, const View& view, int id) cons
   return gone == 0 ? 0.0 : static_cast<double>(gone) / (gone + there);
 }
 
-void MotionStates::decide(Track& track, bool cut_off, double vacated_share) const {
+void MotionEstimator::decide(Track& track, bool cut_off, double vacated_share) const {
   const double speed = track.velocity.velocity.norm();
   const double factor = cut_off ? config_.border_factor : 1.0;
   const double error = config_.certainty * track.velocity.error;
@@ -191,7 +177,7 @@ void MotionStates::decide(Track& track, bool cut_off, double vacated_share) cons
   }
 }
 
-RobustVelocity MotionStates::velocity_of(const Track& track) const {
+RobustVelocity MotionEstimator::velocity_of(const Track& track) const {
   std::vector<double> stamps;
   std::vector<Eigen::Vector3d> places;
   for (const Position& position : track.positions) {
@@ -201,7 +187,7 @@ RobustVelocity MotionStates::velocity_of(const Track& track) const {
   return robust_velocity(stamps, places, track.positions.back().noise_m);
 }
 
-void MotionStates::add_position(Track& track, Position position) const {
+void MotionEstimator::add_position(Track& track, Position position) const {
   // After a long time out of sight nothing is known of the way here.
   const double last_s = track.positions.empty() ? position.stamp_s : track.positions.back().stamp_s;
   if (position.stamp_s - last_s > kLongestGap_s) track.positions.clear();
@@ -211,23 +197,22 @@ void MotionStates::add_position(Track& track, Position position) const {
   }
 }
 
-ObjectMotion MotionStates::motion_of(const Track& track, const ObjectState& state) const {
-  ObjectMotion motion;
-  motion.track = track.id;
+Motion MotionEstimator::motion_of(const Track& track, const ObjectState& state) const {
+  Motion motion;
   motion.velocity_m_s = track.velocity.velocity;
   motion.velocity_error_m_s = track.velocity.error;
   if (!track.known) return motion;
-  motion.motion = track.moving ? Motion::kMoving : Motion::kStill;
+  motion.state = track.moving ? MotionState::kMoving : MotionState::kStill;
   const bool touched =
       state.reason == StateReason::kTouching || state.reason == StateReason::kDepthUnknown;
   if (track.moving && touched) {
-    motion.motion = Motion::kMovedBySomeone;
+    motion.state = MotionState::kMovedBySomeone;
     motion.by = state.person;
   }
   return motion;
 }
 
-std::vector<ObjectMotion> MotionStates::update(const FrameObjects& objects,
+std::vector<Motion> MotionEstimator::update(const FrameObjects& objects,
                                                const DepthImage& depth,
                                                std::span<const ObjectState> states,
                                                const Eigen::Isometry3d& T_world_camera) {
@@ -236,7 +221,7 @@ std::vector<ObjectMotion> MotionStates::update(const FrameObjects& objects,
   std::erase_if(tracks_, [now](const Track& t) { return now - t.last_seen_s > kForgetAfter_s; });
   const View view{objects, depth, T_world_camera};
   const auto enough = static_cast<std::size_t>(config_.min_frames);
-  std::vector<ObjectMotion> motions;
+  std::vector<Motion> motions;
   for (std::size_t i = 0; i < states.size(); ++i) {
     const TrackedObject& object = objects.objects[i];
     Track& track = track_of(object.track);
@@ -258,7 +243,7 @@ std::vector<ObjectMotion> MotionStates::update(const FrameObjects& objects,
   return motions;
 }
 
-std::vector<TrackId> MotionStates::moving() const {
+std::vector<TrackId> MotionEstimator::moving() const {
   std::vector<TrackId> ids;
   for (const Track& track : tracks_) {
     if (track.moving) ids.push_back(track.id);

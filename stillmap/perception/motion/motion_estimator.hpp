@@ -6,14 +6,13 @@
 #include <deque>
 #include <optional>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include <Eigen/Geometry>
 
 #include "stillmap/core/fields.hpp"
 #include "stillmap/geometry/camera.hpp"
-#include "stillmap/perception/motion/dynamic_objects.hpp"
+#include "stillmap/perception/objects/object_state.hpp"
 #include "stillmap/perception/objects/frame_objects.hpp"
 
 namespace stillmap {
@@ -65,24 +64,6 @@ struct MotionStateConfig {
   }
 };
 
-enum class Motion : std::uint8_t {
-  kUnknown,  ///< not seen often enough, or without depth
-  kStill,
-  kMoving,
-  kMovedBySomeone,  ///< moving, and somebody is at it
-};
-[[nodiscard]] std::string_view motion_name(Motion motion);
-
-/// What is known of an object's motion in a frame.
-struct ObjectMotion {
-  TrackId track;
-  Motion motion = Motion::kUnknown;
-  std::optional<Eigen::Vector3d> p_world;  ///< middle of what is seen of it; none without depth
-  Eigen::Vector3d velocity_m_s = Eigen::Vector3d::Zero();  ///< in the world; 0 where unknown
-  double velocity_error_m_s = 0;                           ///< standard error of its length
-  std::optional<TrackId> by;                               ///< who moves it
-};
-
 /// The slope of positions over time that is the median of those between two of them, for each axis,
 /// and its standard error.
 struct RobustVelocity {
@@ -102,13 +83,14 @@ struct RobustVelocity {
 /// a part of its surface of some frames ago, where one now sees farther or an other part of it. So
 /// what is covered up, or cut off by the image, bit by bit does not seem to move. Boxes that were
 /// filled in are no evidence.
-class MotionStates {
+class MotionEstimator {
  public:
-  MotionStates(const MotionStateConfig& config, const CameraModel& camera);
+  MotionEstimator(const MotionStateConfig& config, const CameraModel& camera);
 
-  /// Takes a frame, with what DynamicObjects made of it; gives the motion of its objects in their
-  /// order. Frames in which an object was detected itself come in the order of their stamps.
-  [[nodiscard]] std::vector<ObjectMotion> update(const FrameObjects& objects,
+  /// Takes a frame with the states of its objects; gives the motion of each in their order. Frames
+  /// in which an object was detected itself come in the order of their stamps. `T_world_camera` is
+  /// in a frame that never jumps: the odometry frame.
+  [[nodiscard]] std::vector<Motion> update(const FrameObjects& objects,
                                                  const DepthImage& depth,
                                                  std::span<const ObjectState> states,
                                                  const Eigen::Isometry3d& T_world_camera);
@@ -146,7 +128,7 @@ class MotionStates {
                                                         const ObjectState& state) const;
   [[nodiscard]] double vacated(const Position& old, const View& view, int id) const;
   [[nodiscard]] RobustVelocity velocity_of(const Track& track) const;
-  [[nodiscard]] ObjectMotion motion_of(const Track& track, const ObjectState& state) const;
+  [[nodiscard]] Motion motion_of(const Track& track, const ObjectState& state) const;
   void add_position(Track& track, Position position) const;
   void decide(Track& track, bool cut_off, double vacated_share) const;
 

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "stillmap/core/status.hpp"
+#include "stillmap/core/stopwatch.hpp"
+
+namespace stillmap {
+
+/// Wall-clock times of the stages of one frame. For reports only: no result depends on them.
+class StageClock {
+ public:
+  /// Runs a stage and passes on its result. `before_ms` is added: the time of its part that was
+  /// done ahead.
+  template <class Work>
+  decltype(auto) time(std::string_view stage, double before_ms, const Work& work) {
+    const Scope scope{*this, stage, before_ms};
+    return work();
+  }
+  template <class Work>
+  decltype(auto) time(std::string_view stage, const Work& work) {
+    return time(stage, 0.0, work);
+  }
+
+  /// Of all stages so far.
+  [[nodiscard]] double total_ms() const {
+    double sum = 0;
+    for (const StageTime& time : times_) sum += time.ms;
+    return sum;
+  }
+  [[nodiscard]] std::vector<StageTime> take() { return std::move(times_); }
+
+ private:
+  struct Scope {
+    StageClock& clock;
+    std::string_view stage;
+    double before_ms;
+    Stopwatch watch = {};
+    ~Scope() { clock.times_.push_back({stage, before_ms + watch.lap_ms()}); }
+  };
+
+  std::vector<StageTime> times_;
+};
+
+}  // namespace stillmap

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/perception/motion/modes.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "stillmap/core/error.hpp"
+#include "stillmap/core/nearest_name.hpp"
+
+namespace stillmap {
+namespace {
+
+// A mode is a row here and nothing else. One that needs a new rule adds an enumerator to that rule
+// and its branch in the stage that reads it.
+//
+// `off` and `mask` remove nothing from the map: they are there to be compared with. `paper` has the
+// thresholds of Fan 2020. `full` has depth edges by a threshold that grows with depth as the
+// sensor's noise does, since a fixed one costs the farther walls; instead of islands, which are
+// mostly legs of chairs or what is seen between people, it removes what later views see through.
+constexpr std::array kModes = {
+    DynamicsMode{.name = "off",
+                 .meaning = "nothing is done: SLAM for a static world",
+                 .judges = false,
+                 .cloud = {.edges = "off", .islands = "off", .free_space = "off"}},
+    DynamicsMode{.name = "mask",
+                 .meaning = "what the network's masks of dynamic classes cover is left out",
+                 .cloud = {.edges = "off", .islands = "off", .free_space = "off"}},
+    DynamicsMode{.name = "paper",
+                 .meaning = "the method of Fan et al. 2020",
+                 .extension = ExtensionRule::kBox,
+                 .interaction = true,
+                 .jumps = JumpRule::kPreviousFrame,
+                 .fills_after_one_sighting = true,
+                 .depth_stability = DepthStabilityRule::kDrop,
+                 .static_matches = StaticMatchRule::kJudge,
+                 .cloud = {.edges = "fixed", .islands = "on", .free_space = "off"}},
+    DynamicsMode{.name = "full",
+                 .meaning = "masks extended by depth, motion of all objects, free space; the best",
+                 .extension = ExtensionRule::kConfigured,
+                 .interaction = true,
+                 .jumps = JumpRule::kWarpedFrames,
+                 .motion = true,
+                 .depth_stability = DepthStabilityRule::kConfigured,
+                 .static_matches = StaticMatchRule::kConfigured,
+                 .cloud = {.edges = "growing", .islands = "off", .free_space = "on"}},
+};
+
+}  // namespace
+
+std::span<const DynamicsMode> dynamics_modes() {
+  return kModes;
+}
+
+const DynamicsMode& dynamics_mode(std::string_view name) {
+  const auto* const mode = std::ranges::find(kModes, name, &DynamicsMode::name);
+  if (mode != kModes.end()) return *mode;
+  std::vector<std::string> names;
+  for (const DynamicsMode& known : kModes) names.emplace_back(known.name);
+  throw Error("dynamics.mode: {} is no mode: {}", name, name_hint(name, names));
+}
+
+std::vector<std::string_view> dynamics_mode_names() {
+  std::vector<std::string_view> names;
+  for (const DynamicsMode& mode : kModes) names.push_back(mode.name);
+  return names;
+}
+
+std::string default_dynamics_mode() {
+  return std::string(kModes.back().name);
+}
+
+}  // namespace stillmap

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/system/back_end.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "stillmap/core/error.hpp"
+#include "stillmap/session/session_map.hpp"
+
+namespace stillmap {
+namespace {
+
+constexpr std::int64_t kEnd = std::int64_t{1} << 62;  // after all frames and their due results
+
+CloudConfig resolved_cloud(const SystemConfig& config) {
+  return config.cloud.resolved_for(dynamics_mode(config.dynamics.mode).cloud);
+}
+
+}  // namespace
+
+BackEnd::BackEnd(const SystemConfig& config,
+                 const CameraModel& camera,
+                 const MeasurementModel& measure,
+                 Workers& workers,
+                 const StageProbe& probe)
+    : session_{camera, {}, Map(measure.level_scales()), {}, {}, {}},
+      mapping_(config.mapping, camera, measure, {workers.mapping(), probe}),
+      dense_(resolved_cloud(config), camera, {workers.dense(), probe}),
+      loops_(config.loop,
+             camera,
+             loop_measurement_model(config, measure.level_scales()),
+             config.seed,
+             {workers.loops(), probe}) {}
+
+void BackEnd::load(Session session) {
+  const auto knows_free_space = [](const ViewRecord& v) { return !v.view->range.cells.empty(); };
+  if (dense_.needs_free_space() && !std::ranges::all_of(session.views, knows_free_space)) {
+    throw Error(
+        "the saved map has views that know no free space, which these settings ask for: run with "
+        "its own dynamics.mode, or with cloud.free_space=off");
+  }
+  session_ = std::move(session);
+  first_frame_ = session_.frames.size();
+  loops_.set_places(index_of(session_.map));
+  const std::vector<SubmapId> submaps = session_.map.submaps();
+  if (!submaps.empty()) next_submap_ = SubmapId(submaps.back().value + 1);
+}
+
+Eigen::Isometry3d BackEnd::T_world_camera(std::size_t record) const {
+  return T_world_frame(session_, session_.frames[record]);
+}
+
+Eigen::Isometry3d BackEnd::T_world_last() const {
+  return session_.frames.empty() ? Eigen::Isometry3d::Identity()
+                                 : T_world_frame(session_, session_.frames.back());
+}
+
+// Only one key frame's mapping is under way at a time, so that none is when the map is moved.
+void BackEnd::apply_finished_work(std::int64_t frame_number) {
+  const Eigen::Isometry3d T_before = T_world_last();
+  const std::size_t loops_before = closed_loops_.size();
+  for (const MapUpdate& update : mapping_.collect_due(frame_number)) apply(update, frame_number);
+  bool moved = closed_loops_.size() > loops_before;
+  if (mapping_.idle()) moved = loops_.apply_due(session_.map, frame_number) || moved;
+  if (moved) T_odometry_world_ = T_odometry_world_ * T_before * T_world_last().inverse();
+  dense_.collect_due(session_, frame_number);
+}
+
+void BackEnd::apply(const MapUpdate& update, std::int64_t frame_number) {
+  Map& map = session_.map;
+  map.apply(update);
+  for (const auto& [dropped, anchor] : update.dropped_keyframes) loops_.remove_keyframe(dropped);
+  if (!loops_.close(map, session_.loops, map.keyframes().rbegin()->first, frame_number)) return;
+  const LoopEdge& loop = session_.loops.back();
+  closed_loops_.push_back({map.keyframe(loop.a).stamp, map.keyframe(loop.b).stamp});
+}
+
+void BackEnd::count_landmarks(const TrackedFrame& tracked) {
+  if (!has_pose(tracked)) return;
+  for (const LandmarkId id : tracked.expected) session_.map.count_expected(id);
+  for (const LandmarkId id : tracked.landmarks) {
+    if (id.valid()) session_.map.count_found(id);
+  }
+}
+
+KeyframeId BackEnd::insert_keyframe(const RgbdFrame& frame,
+                                    const TrackedFrame& tracked,
+                                    std::int64_t frame_number) {
+  Map& map = session_.map;
+  Keyframe keyframe;
+  keyframe.frame = frame.id;
+  keyframe.stamp = frame.stamp;
+  if (tracked.status == TrackingStatus::kInitialized) {
+    keyframe.submap = next_submap_;
+    next_submap_ = SubmapId(next_submap_.value + 1);
+  } else {
+    keyframe.submap = map.keyframe(map.anchor(tracked.reference).keyframe).submap;
+  }
+  keyframe.T_world_camera = tracked.T_world_camera;
+  keyframe.features = tracked.features;
+  const KeyframeId id = mapping_.insert(map, std::move(keyframe), tracked.landmarks, frame_number);
+  loops_.add_keyframe(map.keyframe(id));
+  return id;
+}
+
+std::size_t BackEnd::record(const RgbdFrame& frame, const TrackedFrame& tracked) {
+  session_.frames.push_back(
+      {frame.stamp,
+       tracked.reference,
+       session_.map.T_world_keyframe(tracked.reference).inverse() * tracked.T_world_camera});
+  return session_.frames.size() - 1;
+}
+
+void BackEnd::refer_to_keyframe(std::size_t record, KeyframeId keyframe) {
+  session_.frames[record] = {session_.frames[record].stamp, keyframe};
+}
+
+void BackEnd::finish() {
+  apply_finished_work(kEnd);  // which may begin another adjustment
+  loops_.finish(session_.map, main_submap(session_, first_frame_));
+}
+
+// Where no frame of this run was tracked, the submap of the session that it goes on from.
+SubmapId BackEnd::result_submap() const {
+  const SubmapId submap = main_submap(session_, first_frame_);
+  return submap.valid() ? submap : main_submap(session_);
+}
+
+RunResult BackEnd::result(std::size_t threads) const {
+  RunResult result;
+  const SubmapId submap = result_submap();
+  result.trajectory = trajectory_in(session_, submap, first_frame_);
+  result.frames_elsewhere = session_.frames.size() - first_frame_ - result.trajectory.size();
+  result.keyframes = keyframes_in(session_, submap);
+  result.loops = closed_loops_;
+  result.map = dense_.map_of(posed_views(session_, submap), threads);
+  return result;
+}
+
+BackEnd BackEnd::inline_copy() const {
+  BackEnd copy = *this;
+  copy.mapping_ = mapping_.inline_copy();
+  copy.dense_ = dense_.inline_copy();
+  copy.loops_ = loops_.inline_copy();
+  return copy;
+}
+
+PointCloud BackEnd::map_snapshot(std::size_t threads) const {
+  BackEnd copy = inline_copy();
+  copy.finish();
+  return copy.dense_.map_of(posed_views(copy.session_, copy.result_submap()), threads);
+}
+
+PointCloud BackEnd::map_with_poses(
+    std::span<const std::optional<Eigen::Isometry3d>> T_world_frames, std::size_t threads) const {
+  const SubmapId submap = main_submap(session_, first_frame_);
+  std::vector<std::optional<Eigen::Isometry3d>> poses(session_.frames.size());
+  std::size_t given = 0;
+  for (std::size_t i = first_frame_; i < poses.size(); ++i) {
+    if (submap_of(session_, session_.frames[i]) != submap) continue;
+    STILLMAP_CHECK(given < T_world_frames.size());
+    poses[i] = T_world_frames[given++];
+  }
+  STILLMAP_CHECK(given == T_world_frames.size());
+  std::vector<PosedView> posed;
+  for (const ViewRecord& view : session_.views) {
+    if (poses[view.frame]) posed.push_back({*poses[view.frame], view.view.get()});
+  }
+  return dense_.map_of(posed, threads);
+}
+
+Session BackEnd::take_session(double readout_s) {
+  session_.camera.readout_s = readout_s;
+  return std::move(session_);
+}
+
+}  // namespace stillmap

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "stillmap/concurrency/workers.hpp"
+#include "stillmap/session/session.hpp"
+#include "stillmap/session/system_config.hpp"
+#include "stillmap/slam/loop/loop_stage.hpp"
+#include "stillmap/system/dense_stage.hpp"
+#include "stillmap/system/mapping_stage.hpp"
+#include "stillmap/system/results.hpp"
+
+namespace stillmap {
+
+/// Owns the map and everything that changes it after frames are tracked: mapping, loops, the views
+/// of the dense map. Only the system's thread calls it. Results are applied at frames fixed when
+/// their jobs were begun.
+class BackEnd {
+ public:
+  /// The workers must be joined before this is destroyed.
+  BackEnd(const SystemConfig& config,
+          const CameraModel& camera,
+          const MeasurementModel& measure,
+          Workers& workers,
+          const StageProbe& probe);
+
+  /// Goes on from a session. Before the first frame. Throws Error when its views lack the free
+  /// space that the settings ask for.
+  void load(Session session);
+
+  [[nodiscard]] const Map& map() const { return session_.map; }
+  [[nodiscard]] const PlaceIndex& places() const { return loops_.places(); }
+  /// Loop corrections change T_world_camera; the odometry frame never jumps.
+  [[nodiscard]] const Eigen::Isometry3d& T_odometry_world() const { return T_odometry_world_; }
+  /// The camera's pose in a recorded frame, as the map has it now.
+  [[nodiscard]] Eigen::Isometry3d T_world_camera(std::size_t record) const;
+
+  /// Applies all results that are due: map updates, loops that their key frames close, adjustments,
+  /// views.
+  void apply_finished_work(std::int64_t frame_number);
+
+  /// Counts how often landmarks were expected in a frame, and found there.
+  void count_landmarks(const TrackedFrame& tracked);
+  /// Makes a key frame of a tracked frame; mapping around it begins.
+  [[nodiscard]] KeyframeId insert_keyframe(const RgbdFrame& frame,
+                                           const TrackedFrame& tracked,
+                                           std::int64_t frame_number);
+  /// Keeps a tracked frame's pose; gives its record. `tracked.reference` is a key frame.
+  std::size_t record(const RgbdFrame& frame, const TrackedFrame& tracked);
+  /// A recorded frame has become a key frame after all.
+  void refer_to_keyframe(std::size_t record, KeyframeId keyframe);
+  /// Begins a recorded frame's view of the dense map, if its turn has come.
+  void add_view(const DenseStage::Candidate& candidate, std::int64_t frame_number) {
+    dense_.add(candidate, frame_number);
+  }
+  /// Tracking was lost.
+  void lost() { loops_.tracking_lost(); }
+
+  /// Waits for all pending work and adjusts the submap that has most of this run's frames.
+  void finish();
+  /// Trajectory, key frames and map, under the poses as they are.
+  [[nodiscard]] RunResult result(std::size_t threads) const;
+  /// The map as finish() and result() would give it now. Changes nothing.
+  [[nodiscard]] PointCloud map_snapshot(std::size_t threads) const;
+  /// The map with the frames of the result's trajectory at other poses, in its order; frames
+  /// without a pose add nothing to it.
+  [[nodiscard]] PointCloud map_with_poses(
+      std::span<const std::optional<Eigen::Isometry3d>> T_world_frames, std::size_t threads) const;
+
+  /// All that can be saved. Nothing else may be asked afterwards.
+  [[nodiscard]] Session take_session(double readout_s);
+
+ private:
+  [[nodiscard]] BackEnd inline_copy() const;
+  [[nodiscard]] SubmapId result_submap() const;
+  [[nodiscard]] Eigen::Isometry3d T_world_last() const;
+  void apply(const MapUpdate& update, std::int64_t frame_number);
+
+  Session session_;
+  std::size_t first_frame_ = 0;  // of this run in the session
+  SubmapId next_submap_{0};
+  Eigen::Isometry3d T_odometry_world_ = Eigen::Isometry3d::Identity();
+  std::vector<ClosedLoop> closed_loops_;
+
+  MappingStage mapping_;
+  DenseStage dense_;
+  LoopStage loops_;
+};
+
+}  // namespace stillmap

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "stillmap/concurrency/workers.hpp"
+#include "stillmap/perception/motion/dynamics_stage.hpp"
+#include "stillmap/session/system_config.hpp"
+#include "stillmap/slam/features/orb_extractor.hpp"
+#include "stillmap/slam/tracking/keyframe_policy.hpp"
+#include "stillmap/slam/tracking/tracker.hpp"
+#include "stillmap/system/back_end.hpp"
+#include "stillmap/system/late_objects.hpp"
+#include "stillmap/system/prepared_frame.hpp"
+#include "stillmap/system/system.hpp"
+
+namespace stillmap {
+
+/// The stages of a System and the state between frames. System::process() says in which order they
+/// run; what each does to the state is here.
+struct System::Stages {
+  Stages(const SystemConfig& config, const CameraModel& camera, const SystemOptions& options);
+  ~Stages() { workers.join(); }
+  Stages(const Stages&) = delete;
+  Stages& operator=(const Stages&) = delete;
+
+  /// A tracked frame with all that is to be remembered of it.
+  struct Outcome {
+    const FramePtr& frame;
+    const FrameDynamics& dynamics;
+    const TrackedFrame& tracked;
+    MaskOrigin origin;
+    bool is_keyframe;
+  };
+
+  [[nodiscard]] PreparedFrame prepare(FramePtr frame, FrameObjects objects) const;
+  void apply_finished_work();
+  /// Where the camera should be, in the odometry frame; nothing when it is lost or has not begun.
+  [[nodiscard]] std::optional<Eigen::Isometry3d> expected_pose(const RgbdFrame& frame) const;
+  [[nodiscard]] TrackedFrame track(const RgbdFrame& frame, Features features, MaskOrigin origin);
+  /// Makes a key frame of the frame where the rules want one; it is its own reference then.
+  bool insert_if_keyframe(const RgbdFrame& frame, TrackedFrame& tracked, MaskOrigin origin);
+  /// Records the frame and lets dynamics, dense map and late objects know it.
+  [[nodiscard]] FrameResult remember(const Outcome& outcome);
+  void notify(const RgbdFrame& frame, const FrameResult& result);
+  void take_objects(FrameObjects objects);
+  [[nodiscard]] bool needs_own_objects() const;
+
+  SystemConfig config;
+  CameraModel camera;
+  std::size_t threads;
+  bool localize_only;
+  StageProbe probe;
+  std::vector<Observer*> observers;
+  std::int64_t snapshot_every_frames;
+
+  Workers workers;
+  std::unique_ptr<DynamicsStage> dynamics;
+  OrbExtractor extractor;
+  MeasurementModel measure;
+  Tracker tracker;
+  BackEnd back_end;
+  LateObjects late_objects;
+
+  std::int64_t frame_number = 0;  // of those processed
+  KeyframeAge since_keyframe;
+  int lost_frames = 0;  // in a row
+
+ private:
+  [[nodiscard]] bool may_begin_submap(const Features& features) const;
+  [[nodiscard]] KeyframeId insert_keyframe(const RgbdFrame& frame, const TrackedFrame& tracked);
+};
+
+/// Adds the marks of the features, the kept and the dropped ones.
+void add_features(FrameResult& result,
+                  const TrackedFrame& tracked,
+                  const FilteredFeatures& features);
+
+}  // namespace stillmap
