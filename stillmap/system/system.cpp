@@ -136,7 +136,9 @@ void System::update_map(std::int64_t frame) {
   bool moved = false;
   for (const MapUpdate& update : mapping_jobs_.collect_due(frame)) {
     apply(update);
-    if (!loops_.close(session_, session_.map.keyframes().rbegin()->first, frame)) continue;
+    if (!loops_.close(
+            session_.map, session_.loops, session_.map.keyframes().rbegin()->first, frame))
+      continue;
     const LoopEdge& loop = session_.loops.back();
     closed_loops_.push_back(
         {session_.map.keyframe(loop.a).stamp, session_.map.keyframe(loop.b).stamp});

@@ -13,8 +13,8 @@
 #include "stillmap/perception/motion/dynamics_stage.hpp"
 #include "stillmap/session/session.hpp"
 #include "stillmap/session/system_config.hpp"
+#include "stillmap/slam/loop/loop_stage.hpp"
 #include "stillmap/system/frame_result.hpp"
-#include "stillmap/system/loop_stage.hpp"
 #include "stillmap/system/prepared_frame.hpp"
 #include "stillmap/system/view_stage.hpp"
 
