@@ -47,24 +47,23 @@ std::string row_name(const View& a, const View& b) {
 
 void add_pair(Row& row, const View& a, const View& b, const MeasurementModel& measure) {
   const LoopVerifierConfig chosen, lenient{.min_inliers = 4, .min_share = 0, .max_sigma_m = 10};
-  const std::optional<VerifiedLoop> loop =
-      LoopVerifier(lenient, a.camera, measure, 0)
-          .verify(FrameId(static_cast<std::uint32_t>(row.pairs)),
-                  view_of(a, measure),
-                  view_of(b, measure));
+  const std::optional<LoopMatch> loop = LoopVerifier(lenient, a.camera, measure, 0)
+                                            .verify(FrameId(static_cast<std::uint32_t>(row.pairs)),
+                                                    view_of(a, measure),
+                                                    view_of(b, measure));
   ++row.pairs;
   if (!loop) return;
   const auto inliers = static_cast<int>(loop->matches.size());
   row.most_inliers = std::max(row.most_inliers, inliers);
   row.largest_share = std::max(row.largest_share, loop->share());
   if (inliers < chosen.min_inliers || loop->share() < chosen.min_share ||
-      loop->sigma_m > chosen.max_sigma_m) {
+      loop->edge.sigma_m > chosen.max_sigma_m) {
     return;
   }
   ++row.accepted;
   row.shares.push_back(loop->share());
   const Eigen::Isometry3d truth = a.T_world_camera.inverse() * b.T_world_camera;
-  row.errors_m.push_back((loop->T_a_b.translation() - truth.translation()).norm());
+  row.errors_m.push_back((loop->edge.T_a_b.translation() - truth.translation()).norm());
 }
 
 int run(const std::vector<std::string>& arguments) {

@@ -34,7 +34,7 @@ std::size_t close_loops(Session& session,
   }
   std::size_t closed = 0;
   for (const KeyframeId id : newer) {
-    const std::optional<FoundLoop> found = detector.advance(session.map, places, id);
+    const std::optional<LoopMatch> found = detector.advance(session.map, places, id);
     if (!found) continue;
     if (!close_loop(session.map, session.loops, *found, session.camera, measure, config.loop)) {
       continue;

@@ -9,7 +9,7 @@
 #include "stillmap/core/trajectory.hpp"
 #include "stillmap/dense/static_view.hpp"
 #include "stillmap/geometry/camera.hpp"
-#include "stillmap/slam/loop/essential_graph.hpp"
+#include "stillmap/slam/loop/loop_match.hpp"
 #include "stillmap/slam/map/map.hpp"
 
 namespace stillmap {

@@ -16,20 +16,20 @@ namespace stillmap {
 
 /// What a detector finds that is asked for the first `keyframes` key frames, one after another, and
 /// told of no loop that was closed, but where tracking was lost.
-[[nodiscard]] inline std::vector<FoundLoop> find_loops(const SimulatedMap& simulated,
+[[nodiscard]] inline std::vector<LoopMatch> find_loops(const SimulatedMap& simulated,
                                                        const SimulatedWorld& world,
                                                        const LoopConfig& config = {},
                                                        std::uint32_t keyframes = 1000) {
   LoopDetector detector(config, world.camera(), loop_measure(world), 0);
   PlaceIndex places;
-  std::vector<FoundLoop> loops;
+  std::vector<LoopMatch> loops;
   SubmapId current;
   for (const auto& [id, keyframe] : simulated.map.keyframes()) {
     if (id.value >= keyframes) break;
     if (keyframe.submap != current) detector.clear();
     current = keyframe.submap;
     places.add(id, keyframe.features->descriptors);
-    std::optional<FoundLoop> found = detector.advance(simulated.map, places, id);
+    std::optional<LoopMatch> found = detector.advance(simulated.map, places, id);
     if (found) loops.push_back(std::move(*found));
   }
   return loops;
@@ -37,9 +37,9 @@ namespace stillmap {
 
 /// How the later key frame of a loop truly stands to the earlier.
 [[nodiscard]] inline Eigen::Isometry3d true_T_a_b(const SimulatedMap& simulated,
-                                                  const FoundLoop& loop) {
-  return simulated.T_world_keyframe[loop.earlier.index()].inverse() *
-         simulated.T_world_keyframe[loop.later.index()];
+                                                  const LoopMatch& loop) {
+  return simulated.T_world_keyframe[loop.edge.a.index()].inverse() *
+         simulated.T_world_keyframe[loop.edge.b.index()];
 }
 
 /// Distance and angle between two poses.

@@ -5,19 +5,11 @@
 #include <span>
 #include <vector>
 
+#include "stillmap/slam/loop/loop_match.hpp"
 #include "stillmap/slam/map/map.hpp"
 #include "stillmap/slam/optim/pose_graph.hpp"
 
 namespace stillmap {
-
-/// Two key frames that were found to show one place.
-struct LoopEdge {
-  KeyframeId a;
-  KeyframeId b;
-  Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();
-  double sigma_m = 0.005;  ///< as its matches fix it; more is assumed, for they agree too well
-  double sigma_rad = 0.002;
-};
 
 struct EssentialGraphConfig {
   int min_shared = 100;

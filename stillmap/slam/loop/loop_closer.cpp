@@ -13,11 +13,10 @@ namespace {
 constexpr std::size_t kEndKeyframes = 10;  // of each end, whose landmarks are merged
 
 // The later submap moves: what was there first stays where it is.
-void join_submaps(Map& map, const FoundLoop& found) {
-  const Keyframe& a = map.keyframe(found.earlier);
-  const Keyframe& b = map.keyframe(found.later);
-  const Eigen::Isometry3d T_a_b =
-      a.T_world_camera * found.verified.T_a_b * b.T_world_camera.inverse();
+void join_submaps(Map& map, const LoopMatch& found) {
+  const Keyframe& a = map.keyframe(found.edge.a);
+  const Keyframe& b = map.keyframe(found.edge.b);
+  const Eigen::Isometry3d T_a_b = a.T_world_camera * found.edge.T_a_b * b.T_world_camera.inverse();
   if (a.submap < b.submap) {
     map.join_submaps(b.submap, a.submap, T_a_b);
   } else {
@@ -38,17 +37,17 @@ bool move_to_fit(Map& map, std::span<const LoopEdge> loops, const LoopConfig& co
   return true;
 }
 
-void merge_matches(Map& map, const FoundLoop& found) {
-  for (const auto& [in_earlier, in_later] : found.verified.matches) {
-    const LandmarkId old = map.keyframe(found.earlier).landmarks[in_earlier];
-    const LandmarkId recent = map.keyframe(found.later).landmarks[in_later];
+void merge_matches(Map& map, const LoopMatch& found) {
+  for (const auto& [in_earlier, in_later] : found.matches) {
+    const LandmarkId old = map.keyframe(found.edge.a).landmarks[in_earlier];
+    const LandmarkId recent = map.keyframe(found.edge.b).landmarks[in_later];
     if (old == recent) continue;
     if (old.valid() && recent.valid()) {
       map.merge_landmarks(recent, old);
     } else if (old.valid()) {
-      (void)map.add_observation(old, {found.later, in_later});
+      (void)map.add_observation(old, {found.edge.b, in_later});
     } else if (recent.valid()) {
-      (void)map.add_observation(recent, {found.earlier, in_earlier});
+      (void)map.add_observation(recent, {found.edge.a, in_earlier});
     }
   }
 }
@@ -74,13 +73,13 @@ std::vector<LandmarkId> landmarks_seen(const Map& map, std::span<const KeyframeI
 }
 
 void merge_ends(Map& map,
-                const FoundLoop& found,
+                const LoopMatch& found,
                 const CameraModel& camera,
                 const MeasurementModel& measure,
                 double radius_px) {
   // Before the matches join them, so that each is a neighbourhood of its own.
-  const std::vector<KeyframeId> earlier = end_of_loop(map, found.earlier);
-  const std::vector<KeyframeId> later = end_of_loop(map, found.later);
+  const std::vector<KeyframeId> earlier = end_of_loop(map, found.edge.a);
+  const std::vector<KeyframeId> later = end_of_loop(map, found.edge.b);
   merge_matches(map, found);
   const std::vector<LandmarkId> old = landmarks_seen(map, earlier);
   for (const KeyframeId id : later) fuse_landmarks(map, id, old, camera, measure, radius_px);
@@ -96,16 +95,12 @@ void merge_ends(Map& map,
 
 bool close_loop(Map& map,
                 std::vector<LoopEdge>& loops,
-                const FoundLoop& found,
+                const LoopMatch& found,
                 const CameraModel& camera,
                 const MeasurementModel& measure,
                 const LoopConfig& config) {
-  const bool one_submap = map.keyframe(found.earlier).submap == map.keyframe(found.later).submap;
-  loops.push_back({found.earlier,
-                   found.later,
-                   found.verified.T_a_b,
-                   found.verified.sigma_m,
-                   found.verified.sigma_rad});
+  const bool one_submap = map.keyframe(found.edge.a).submap == map.keyframe(found.edge.b).submap;
+  loops.push_back(found.edge);
   if (!one_submap) {
     join_submaps(map, found);
   } else if (!move_to_fit(map, loops, config)) {

@@ -20,7 +20,7 @@ namespace stillmap {
 /// it being worked on.
 [[nodiscard]] bool close_loop(Map& map,
                               std::vector<LoopEdge>& loops,
-                              const FoundLoop& found,
+                              const LoopMatch& found,
                               const CameraModel& camera,
                               const MeasurementModel& measure,
                               const LoopConfig& config);

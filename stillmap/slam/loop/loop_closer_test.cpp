@@ -20,7 +20,7 @@ const SimulatedWorld& world() {
 constexpr ObservationNoise kNoWrongDescriptors{
     .pixel_sigma_px = 0.5, .inverse_depth_sigma = 0.004, .flipped_bits = 10};
 
-bool close(SimulatedMap& simulated, std::vector<LoopEdge>& loops, const FoundLoop& found) {
+bool close(SimulatedMap& simulated, std::vector<LoopEdge>& loops, const LoopMatch& found) {
   return close_loop(simulated.map, loops, found, world().camera(), loop_measure(world()), {});
 }
 
@@ -58,7 +58,7 @@ std::size_t wrong_observations(const SimulatedMap& simulated) {
 TEST(LoopCloser, TheDriftOfARoundGoes) {
   SimulatedMap round = drifted_round(world(), {});
   const double before_m = mean_error_m(round);
-  const FoundLoop found = find_loops(round, world()).back();
+  const LoopMatch found = find_loops(round, world()).back();
   std::vector<LoopEdge> loops;
   ASSERT_TRUE(close(round, loops, found));
   round.map.check_consistency();
@@ -74,11 +74,11 @@ TEST(LoopCloser, TheDriftOfARoundGoes) {
   EXPECT_LT(landmarks_m / static_cast<double>(round.map.landmark_count()), 0.08);
   EXPECT_EQ(round.map.keyframe(KeyframeId(0)).T_world_camera.matrix(), round_pose(0).matrix());
   ASSERT_EQ(loops.size(), 1U);
-  EXPECT_EQ(loops[0].a, found.earlier);
-  EXPECT_EQ(loops[0].b, found.later);
-  EXPECT_EQ(loops[0].T_a_b.matrix(), found.verified.T_a_b.matrix());
-  EXPECT_EQ(loops[0].sigma_m, found.verified.sigma_m);
-  EXPECT_EQ(loops[0].sigma_rad, found.verified.sigma_rad);
+  EXPECT_EQ(loops[0].a, found.edge.a);
+  EXPECT_EQ(loops[0].b, found.edge.b);
+  EXPECT_EQ(loops[0].T_a_b.matrix(), found.edge.T_a_b.matrix());
+  EXPECT_EQ(loops[0].sigma_m, found.edge.sigma_m);
+  EXPECT_EQ(loops[0].sigma_rad, found.edge.sigma_rad);
 }
 
 TEST(LoopCloser, LandmarksOfBothEndsBecomeOne) {
@@ -86,18 +86,18 @@ TEST(LoopCloser, LandmarksOfBothEndsBecomeOne) {
       world(),
       {.noise = {.pixel_sigma_px = 0.5, .inverse_depth_sigma = 0.004, .flipped_bits = 10}});
   ASSERT_EQ(wrong_observations(round), 0U);
-  const FoundLoop found = find_loops(round, world()).back();
+  const LoopMatch found = find_loops(round, world()).back();
   const std::size_t landmarks = round.map.landmark_count();
-  const std::size_t doubled_before = doubled(round, found.earlier, found.later);
+  const std::size_t doubled_before = doubled(round, found.edge.a, found.edge.b);
   ASSERT_GT(doubled_before, 100U);
   std::vector<LoopEdge> loops;
   ASSERT_TRUE(close(round, loops, found));
-  EXPECT_LT(doubled(round, found.earlier, found.later), doubled_before / 10);
+  EXPECT_LT(doubled(round, found.edge.a, found.edge.b), doubled_before / 10);
   EXPECT_EQ(wrong_observations(round), 0U);
   EXPECT_LT(round.map.landmark_count(), landmarks - doubled_before / 2);
   // Also those of the neighbours, which the loop itself does not name.
-  const KeyframeId before_later(found.later.value - 2);
-  EXPECT_LT(doubled(round, found.earlier, before_later), 30U);
+  const KeyframeId before_later(found.edge.b.value - 2);
+  EXPECT_LT(doubled(round, found.edge.a, before_later), 30U);
 }
 
 // Takes every third landmark from a key frame.
@@ -127,37 +127,37 @@ std::size_t missing(const SimulatedMap& simulated, KeyframeId a, KeyframeId b) {
 TEST(LoopCloser, FeaturesOfOneEndGetTheLandmarksOfTheOther) {
   SimulatedMap round =
       drifted_round(world(), {.drift = Vector6d::Zero(), .noise = kNoWrongDescriptors});
-  const FoundLoop found = find_loops(round, world()).back();
-  const KeyframeId beside_later(found.later.value - 1), beside_earlier(found.earlier.value + 1);
+  const LoopMatch found = find_loops(round, world()).back();
+  const KeyframeId beside_later(found.edge.b.value - 1), beside_earlier(found.edge.a.value + 1);
   for (const KeyframeId id : {beside_later, beside_earlier}) rob(round, id);
-  const std::size_t in_later = missing(round, beside_later, found.earlier);
-  const std::size_t in_earlier = missing(round, beside_earlier, found.later);
+  const std::size_t in_later = missing(round, beside_later, found.edge.a);
+  const std::size_t in_earlier = missing(round, beside_earlier, found.edge.b);
   ASSERT_GT(in_later, 50U);
   ASSERT_GT(in_earlier, 50U);
   std::vector<LoopEdge> loops;
   ASSERT_TRUE(close(round, loops, found));
   round.map.check_consistency();
-  EXPECT_LT(missing(round, beside_later, found.earlier), in_later / 3);
-  EXPECT_LT(missing(round, beside_earlier, found.later), in_earlier / 3);
+  EXPECT_LT(missing(round, beside_later, found.edge.a), in_later / 3);
+  EXPECT_LT(missing(round, beside_earlier, found.edge.b), in_earlier / 3);
   EXPECT_EQ(wrong_observations(round), 0U);
 }
 
 TEST(LoopCloser, WhatTheLoopMatchedBecomesOneAlsoWhereNothingElseIsLookedFor) {
   SimulatedMap round = drifted_round(world(), {});
-  const FoundLoop found = find_loops(round, world()).back();
-  for (const KeyframeId id : {found.earlier, found.later}) rob(round, id);
-  const Keyframe earlier = round.map.keyframe(found.earlier),
-                 later = round.map.keyframe(found.later);
+  const LoopMatch found = find_loops(round, world()).back();
+  for (const KeyframeId id : {found.edge.a, found.edge.b}) rob(round, id);
+  const Keyframe earlier = round.map.keyframe(found.edge.a),
+                 later = round.map.keyframe(found.edge.b);
   LoopConfig config;
   config.fusion_radius_px = 1e-9;
   std::vector<LoopEdge> loops;
   ASSERT_TRUE(close_loop(round.map, loops, found, world().camera(), loop_measure(world()), config));
   round.map.check_consistency();
   int old_kept = 0, taken_over = 0;
-  for (const auto& [in_earlier, in_later] : found.verified.matches) {
+  for (const auto& [in_earlier, in_later] : found.matches) {
     const LandmarkId old = earlier.landmarks[in_earlier], recent = later.landmarks[in_later];
-    const LandmarkId now = round.map.keyframe(found.earlier).landmarks[in_earlier];
-    EXPECT_EQ(now, round.map.keyframe(found.later).landmarks[in_later]);
+    const LandmarkId now = round.map.keyframe(found.edge.a).landmarks[in_earlier];
+    EXPECT_EQ(now, round.map.keyframe(found.edge.b).landmarks[in_later]);
     EXPECT_EQ(now, old.valid() ? old : recent);
     old_kept += old.valid() && !recent.valid() ? 1 : 0;
     taken_over += recent.valid() && !old.valid() ? 1 : 0;
@@ -169,14 +169,14 @@ TEST(LoopCloser, WhatTheLoopMatchedBecomesOneAlsoWhereNothingElseIsLookedFor) {
 TEST(LoopCloser, WhatContradictsTheOthersIsRefusedAndChangesNothing) {
   SimulatedMap round = drifted_round(world(), {});
   const double before_m = mean_error_m(round);
-  const std::vector<FoundLoop> found = find_loops(round, world());
+  const std::vector<LoopMatch> found = find_loops(round, world());
   ASSERT_GE(found.size(), 3U);
   std::vector<LoopEdge> loops;
-  for (const FoundLoop& right : found) ASSERT_TRUE(close(round, loops, right));
+  for (const LoopMatch& right : found) ASSERT_TRUE(close(round, loops, right));
   EXPECT_EQ(loops.size(), found.size());
   EXPECT_LT(mean_error_m(round), before_m / 3);
-  FoundLoop wrong = found.back();
-  wrong.verified.T_a_b = Eigen::Translation3d(0.5, 0, 0) * wrong.verified.T_a_b;
+  LoopMatch wrong = found.back();
+  wrong.edge.T_a_b = Eigen::Translation3d(0.5, 0, 0) * wrong.edge.T_a_b;
   const MapParts before = round.map.parts();
   EXPECT_FALSE(close(round, loops, wrong));
   expect_same(round.map.parts(), before);
@@ -214,15 +214,15 @@ class LoopCloserOfTwoSubmaps : public testing::Test {
       farthest_m = std::max(farthest_m, (landmark.p_world - truth).norm());
     }
     EXPECT_LT(farthest_m, 0.1);
-    EXPECT_LT(doubled(two_, found_.earlier, found_.later), doubled_ / 10);
+    EXPECT_LT(doubled(two_, found_.edge.a, found_.edge.b), doubled_ / 10);
     EXPECT_EQ(wrong_observations(two_), 0U);
     EXPECT_EQ(loops_.size(), 1U);
   }
 
   SimulatedMap two_;
-  FoundLoop found_;
+  LoopMatch found_;
   std::vector<LoopEdge> loops_;
-  std::size_t doubled_ = doubled(two_, found_.earlier, found_.later);
+  std::size_t doubled_ = doubled(two_, found_.edge.a, found_.edge.b);
 };
 
 TEST_F(LoopCloserOfTwoSubmaps, TheLaterMovesOntoTheEarlier) {
@@ -232,9 +232,9 @@ TEST_F(LoopCloserOfTwoSubmaps, TheLaterMovesOntoTheEarlier) {
 }
 
 TEST_F(LoopCloserOfTwoSubmaps, AlsoWhenTheEarlierSubmapIsTheOneThatFinds) {
-  std::swap(found_.earlier, found_.later);
-  found_.verified.T_a_b = found_.verified.T_a_b.inverse();
-  for (auto& [in_earlier, in_later] : found_.verified.matches) std::swap(in_earlier, in_later);
+  std::swap(found_.edge.a, found_.edge.b);
+  found_.edge.T_a_b = found_.edge.T_a_b.inverse();
+  for (auto& [in_earlier, in_later] : found_.matches) std::swap(in_earlier, in_later);
   ASSERT_TRUE(close(two_, loops_, found_));
   expect_joined();
 }

@@ -28,7 +28,7 @@ LoopDetector::LoopDetector(const LoopConfig& config,
       gate_(config.gate),
       verifier_(config.verifier, camera, measure_, seed) {}
 
-std::optional<FoundLoop> LoopDetector::advance(const Map& map,
+std::optional<LoopMatch> LoopDetector::advance(const Map& map,
                                                const PlaceIndex& places,
                                                KeyframeId newest) {
   const Keyframe& keyframe = map.keyframe(newest);
@@ -44,8 +44,8 @@ std::optional<FoundLoop> LoopDetector::advance(const Map& map,
   const LoopView here = loop_view(keyframe, map, camera_, measure_);
   for (const KeyframeId candidate : passed) {
     const LoopView there = loop_view(map.keyframe(candidate), map, camera_, measure_);
-    std::optional<VerifiedLoop> verified = verifier_.verify(keyframe.frame, there, here);
-    if (verified) return FoundLoop{candidate, newest, std::move(*verified)};
+    std::optional<LoopMatch> loop = verifier_.verify(keyframe.frame, there, here);
+    if (loop) return loop;
   }
   return std::nullopt;
 }

@@ -11,13 +11,6 @@
 
 namespace stillmap {
 
-/// Two key frames of a map that show one place.
-struct FoundLoop {
-  KeyframeId earlier;
-  KeyframeId later;
-  VerifiedLoop verified;  ///< a is the earlier
-};
-
 /// Finds, key frame after key frame, the places that were seen before: candidates by appearance,
 /// which several key frames in a row must find, decided by geometry. The earlier key frame may be
 /// of another submap.
@@ -30,8 +23,8 @@ class LoopDetector {
                std::uint32_t seed);
 
   /// To be called for every key frame, in their order, once its landmarks are mapped. `places`
-  /// holds all key frames of the map, also the newest.
-  [[nodiscard]] std::optional<FoundLoop> advance(const Map& map,
+  /// holds all key frames of the map, also the newest. The match's `a` is the earlier key frame.
+  [[nodiscard]] std::optional<LoopMatch> advance(const Map& map,
                                                  const PlaceIndex& places,
                                                  KeyframeId newest);
 

@@ -26,30 +26,30 @@ LoopConfig after(int key_frames) {
 }
 
 // The features of both that are said to see one point do.
-void expect_true_loop(const SimulatedMap& simulated, const FoundLoop& loop) {
-  const Eigen::Vector2d error = difference(loop.verified.T_a_b, true_T_a_b(simulated, loop));
-  EXPECT_LT(error.x(), 0.02) << loop.earlier.value << " - " << loop.later.value;
-  EXPECT_LT(error.y(), 0.01) << loop.earlier.value << " - " << loop.later.value;
+void expect_true_loop(const SimulatedMap& simulated, const LoopMatch& loop) {
+  const Eigen::Vector2d error = difference(loop.edge.T_a_b, true_T_a_b(simulated, loop));
+  EXPECT_LT(error.x(), 0.02) << loop.edge.a.value << " - " << loop.edge.b.value;
+  EXPECT_LT(error.y(), 0.01) << loop.edge.a.value << " - " << loop.edge.b.value;
   std::size_t wrong = 0;
-  for (const auto& [in_earlier, in_later] : loop.verified.matches) {
-    wrong += simulated.points[loop.earlier.index()][in_earlier] !=
-                     simulated.points[loop.later.index()][in_later]
+  for (const auto& [in_earlier, in_later] : loop.matches) {
+    wrong += simulated.points[loop.edge.a.index()][in_earlier] !=
+                     simulated.points[loop.edge.b.index()][in_later]
                  ? 1
                  : 0;
   }
-  EXPECT_GE(loop.verified.matches.size(), 40U);
+  EXPECT_GE(loop.matches.size(), 40U);
   EXPECT_EQ(wrong, 0U);
 }
 
 TEST(LoopDetector, FindsTheBeginningAtTheEndOfARoundAndNothingBefore) {
-  const std::vector<FoundLoop> loops = find_loops(one_submap(), world());
+  const std::vector<LoopMatch> loops = find_loops(one_submap(), world());
   ASSERT_FALSE(loops.empty());
-  for (const FoundLoop& loop : loops) {
+  for (const LoopMatch& loop : loops) {
     // Key frames that are more than five apart see nothing in common.
-    EXPECT_GE(loop.later.value, loop.earlier.value + kRoundKeyframes - 5);
+    EXPECT_GE(loop.edge.b.value, loop.edge.a.value + kRoundKeyframes - 5);
     expect_true_loop(one_submap(), loop);
   }
-  EXPECT_EQ(loops.back().later, KeyframeId(43));
+  EXPECT_EQ(loops.back().edge.b, KeyframeId(43));
 }
 
 TEST(LoopDetector, FindsKeyFramesOfAnotherSubmap) {
@@ -58,27 +58,27 @@ TEST(LoopDetector, FindsKeyFramesOfAnotherSubmap) {
       {.drift = Vector6d::Zero(),  // else what a key frame sees is as far off as what made it
        .second_submap_from = 36,
        .T_second_first = make_pose(so3_exp(Eigen::Vector3d(0.5, 1, 2)), {20, 30, 40})});
-  const std::vector<FoundLoop> loops = find_loops(two, world());
+  const std::vector<LoopMatch> loops = find_loops(two, world());
   ASSERT_FALSE(loops.empty());
   bool of_beginning = false;
-  for (const FoundLoop& loop : loops) {
-    EXPECT_EQ(two.map.keyframe(loop.earlier).submap, SubmapId(0));
-    EXPECT_EQ(two.map.keyframe(loop.later).submap, SubmapId(1));
+  for (const LoopMatch& loop : loops) {
+    EXPECT_EQ(two.map.keyframe(loop.edge.a).submap, SubmapId(0));
+    EXPECT_EQ(two.map.keyframe(loop.edge.b).submap, SubmapId(1));
     expect_true_loop(two, loop);
-    of_beginning = of_beginning || loop.earlier < KeyframeId(5);
+    of_beginning = of_beginning || loop.edge.a < KeyframeId(5);
   }
   EXPECT_TRUE(of_beginning);
   // What the first world had just seen is no neighbour, but a place of another world: it is found
   // as soon as the gate lets it pass.
-  EXPECT_EQ(loops.front().later, KeyframeId(38));
+  EXPECT_EQ(loops.front().edge.b, KeyframeId(38));
 }
 
 TEST(LoopDetector, OneImageIsNotEnough) {
-  const std::vector<FoundLoop> at_once = find_loops(one_submap(), world(), after(1));
-  const std::vector<FoundLoop> after_three = find_loops(one_submap(), world(), after(3));
+  const std::vector<LoopMatch> at_once = find_loops(one_submap(), world(), after(1));
+  const std::vector<LoopMatch> after_three = find_loops(one_submap(), world(), after(3));
   ASSERT_FALSE(at_once.empty());
   ASSERT_FALSE(after_three.empty());
-  EXPECT_GT(after_three.front().later, at_once.front().later);
+  EXPECT_GT(after_three.front().edge.b, at_once.front().edge.b);
   const auto never = static_cast<int>(one_submap().map.keyframes().size()) + 1;
   EXPECT_TRUE(find_loops(one_submap(), world(), after(never)).empty());
 }
@@ -88,7 +88,7 @@ TEST(LoopDetector, NothingBeforeTheRoundIsClosed) {
 }
 
 TEST(LoopDetector, ClearedItBeginsAnew) {
-  const KeyframeId first = find_loops(one_submap(), world()).front().later;
+  const KeyframeId first = find_loops(one_submap(), world()).front().edge.b;
   ASSERT_LT(first, KeyframeId(42));
   LoopDetector detector({}, world().camera(), loop_measure(world()), 0);
   PlaceIndex places;

@@ -155,21 +155,24 @@ std::vector<Projection> LoopVerifier::project(const LoopView& b,
   return projections;
 }
 
-std::optional<VerifiedLoop> LoopVerifier::verify(FrameId frame,
-                                                 const LoopView& a,
-                                                 const LoopView& b) const {
+std::optional<LoopMatch> LoopVerifier::verify(FrameId frame,
+                                              const LoopView& a,
+                                              const LoopView& b) const {
   const std::vector<Match> by_appearance = match(a, b);
   if (by_appearance.size() < static_cast<std::size_t>(config_.min_matches)) return std::nullopt;
   const std::optional<Eigen::Isometry3d> sampled = sample(frame, a, b, by_appearance);
   if (!sampled) return std::nullopt;
-  VerifiedLoop loop;
-  loop.T_a_b = refine(a, b, *sampled, agreeing(a, b, *sampled, by_appearance));
+  LoopMatch loop;
+  loop.edge.a = a.keyframe;
+  loop.edge.b = b.keyframe;
+  Eigen::Isometry3d& T_a_b = loop.edge.T_a_b;
+  T_a_b = refine(a, b, *sampled, agreeing(a, b, *sampled, by_appearance));
 
   // Twice, for the first pose may come from one corner of the image.
   for (int round = 0; round < 2; ++round) {
     std::vector<std::uint32_t> seen;  // features of b, as the projections
     std::vector<Projection> projections;
-    const std::vector<Projection> all = project(b, loop.T_a_b);
+    const std::vector<Projection> all = project(b, T_a_b);
     for (std::uint32_t i = 0; i < all.size(); ++i) {
       if (all[i].descriptor == nullptr) continue;
       seen.push_back(i);
@@ -180,16 +183,16 @@ std::optional<VerifiedLoop> LoopVerifier::verify(FrameId frame,
          match_projections(projections, *a.features, {}, {.max_distance = kGuidedDistance})) {
       guided.emplace_back(m.feature, seen[m.query]);
     }
-    loop.T_a_b = refine(a, b, loop.T_a_b, agreeing(a, b, loop.T_a_b, guided));
-    loop.matches = agreeing(a, b, loop.T_a_b, guided);
+    T_a_b = refine(a, b, T_a_b, agreeing(a, b, T_a_b, guided));
+    loop.matches = agreeing(a, b, T_a_b, guided);
     loop.expected = static_cast<int>(seen.size());
   }
   if (loop.matches.size() < static_cast<std::size_t>(config_.min_inliers)) return std::nullopt;
   if (loop.share() < config_.min_share) return std::nullopt;
-  const Spread known = spread(a, b, loop.T_a_b, loop.matches);
-  loop.sigma_m = known.sigma_m;
-  loop.sigma_rad = known.sigma_rad;
-  if (!(loop.sigma_m <= config_.max_sigma_m)) return std::nullopt;
+  const Spread known = spread(a, b, T_a_b, loop.matches);
+  loop.edge.sigma_m = known.sigma_m;
+  loop.edge.sigma_rad = known.sigma_rad;
+  if (!(known.sigma_m <= config_.max_sigma_m)) return std::nullopt;
   return loop;
 }
 

@@ -10,6 +10,7 @@
 #include "stillmap/core/fields.hpp"
 #include "stillmap/geometry/camera.hpp"
 #include "stillmap/slam/features/matcher.hpp"
+#include "stillmap/slam/loop/loop_match.hpp"
 #include "stillmap/slam/loop/loop_view.hpp"
 
 namespace stillmap {
@@ -37,21 +38,6 @@ struct LoopVerifierConfig {
   }
 };
 
-/// Two images that show one place.
-struct VerifiedLoop {
-  Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();
-  /// (feature of a, feature of b) that see one point: their points agree with both images.
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> matches;
-  int expected = 0;      ///< points of b that a should see
-  double sigma_m = 0;    ///< how well the matches fix T_a_b: its position,
-  double sigma_rad = 0;  ///< and its rotation
-
-  /// Of what should be seen.
-  [[nodiscard]] double share() const {
-    return expected > 0 ? static_cast<double>(matches.size()) / expected : 0.0;
-  }
-};
-
 /// Decides from geometry whether two images show one place, and how they stand to each other.
 ///
 /// Matches by appearance that a rigid motion explains (RANSAC over three matches; a match agrees
@@ -70,9 +56,9 @@ class LoopVerifier {
 
   /// Nothing where the views are not of one place, as far as can be told. `frame`: a's, from which
   /// (with the seed) the random draws follow; the same input gives the same bits.
-  [[nodiscard]] std::optional<VerifiedLoop> verify(FrameId frame,
-                                                   const LoopView& a,
-                                                   const LoopView& b) const;
+  [[nodiscard]] std::optional<LoopMatch> verify(FrameId frame,
+                                                const LoopView& a,
+                                                const LoopView& b) const;
 
  private:
   using Match = std::pair<std::uint32_t, std::uint32_t>;

@@ -48,10 +48,10 @@ TEST(LoopVerifier, FindsHowTheViewsStandToEachOther) {
     const Eigen::Isometry3d T_world_b = pose(40 + turn_deg, {0.2, -0.1, 0.15});
     const Observed seen_a = world.observe(T_world_a, kNoise, rng);
     const Observed seen_b = world.observe(T_world_b, kNoise, rng);
-    const std::optional<VerifiedLoop> loop =
+    const std::optional<LoopMatch> loop =
         verifier_of(world).verify(FrameId(5), view_of(world, seen_a), view_of(world, seen_b));
     ASSERT_TRUE(loop) << turn_deg;
-    const Eigen::Isometry3d error = loop->T_a_b.inverse() * (T_world_a.inverse() * T_world_b);
+    const Eigen::Isometry3d error = loop->edge.T_a_b.inverse() * (T_world_a.inverse() * T_world_b);
     EXPECT_LT(error.translation().norm(), 0.02) << turn_deg;
     EXPECT_LT(rotation_angle(error.linear()), 0.004) << turn_deg;
     int right = 0;
@@ -69,12 +69,12 @@ TEST(LoopVerifier, ExactViewsGiveTheExactPose) {
   const SimulatedWorld world({}, simulated_camera());
   std::mt19937 rng(2);
   const Eigen::Isometry3d T_world_a = pose(0, {0, 0, 0}), T_world_b = pose(12, {0.3, 0, 0});
-  const std::optional<VerifiedLoop> loop =
+  const std::optional<LoopMatch> loop =
       verifier_of(world).verify(FrameId(0),
                                 view_of(world, world.observe(T_world_a, {}, rng)),
                                 view_of(world, world.observe(T_world_b, {}, rng)));
   ASSERT_TRUE(loop);
-  const Eigen::Isometry3d error = loop->T_a_b.inverse() * (T_world_a.inverse() * T_world_b);
+  const Eigen::Isometry3d error = loop->edge.T_a_b.inverse() * (T_world_a.inverse() * T_world_b);
   EXPECT_LT(error.translation().norm(), 1e-4);  // pixels and depths are kept as floats
   EXPECT_LT(rotation_angle(error.linear()), 1e-4);
 }
@@ -90,11 +90,11 @@ TEST(LoopVerifier, FindsItAmongManyWrongMatches) {
     std::swap(seen_b.features.descriptors[i], seen_b.features.descriptors[i - 2]);
     seen_b.features.angle_deg[i] = seen_b.features.angle_deg[i - 2];
   }
-  const std::optional<VerifiedLoop> loop =
+  const std::optional<LoopMatch> loop =
       verifier_of(world, {.min_share = 0.1})
           .verify(FrameId(0), view_of(world, seen_a), view_of(world, seen_b));
   ASSERT_TRUE(loop);
-  const Eigen::Isometry3d error = loop->T_a_b.inverse() * (T_world_a.inverse() * T_world_b);
+  const Eigen::Isometry3d error = loop->edge.T_a_b.inverse() * (T_world_a.inverse() * T_world_b);
   EXPECT_LT(error.translation().norm(), 0.02);
 }
 
@@ -193,7 +193,7 @@ TEST(LoopVerifier, RefusesADeskOfTheSameMakeElsewhere) {
   EXPECT_FALSE(verifier.verify(FrameId(0), a, elsewhere));
   EXPECT_TRUE(verifier.verify(FrameId(0), a, here));
   // It is the share that tells.
-  const std::optional<VerifiedLoop> fooled =
+  const std::optional<LoopMatch> fooled =
       verifier_of(desk, {.min_share = 0}).verify(FrameId(0), a, elsewhere);
   ASSERT_TRUE(fooled);
   EXPECT_LT(fooled->share(), 0.2);
@@ -218,10 +218,10 @@ TEST(LoopVerifier, IsTheSameBitsForASeed) {
   std::mt19937 rng(8);
   const LoopView a = view_of(world, world.observe(pose(0, {0, 0, 0}), kNoise, rng));
   const LoopView b = view_of(world, world.observe(pose(9, {0.1, 0, 0}), kNoise, rng));
-  const std::optional<VerifiedLoop> first = verifier_of(world, {}, 3).verify(FrameId(9), a, b);
-  const std::optional<VerifiedLoop> second = verifier_of(world, {}, 3).verify(FrameId(9), a, b);
+  const std::optional<LoopMatch> first = verifier_of(world, {}, 3).verify(FrameId(9), a, b);
+  const std::optional<LoopMatch> second = verifier_of(world, {}, 3).verify(FrameId(9), a, b);
   ASSERT_TRUE(first && second);
-  EXPECT_EQ(first->T_a_b.matrix(), second->T_a_b.matrix());
+  EXPECT_EQ(first->edge.T_a_b.matrix(), second->edge.T_a_b.matrix());
   EXPECT_EQ(first->matches, second->matches);
 }
 

@@ -9,7 +9,7 @@ LoopView loop_view(const Keyframe& keyframe,
                    const MeasurementModel& measure) {
   const Features& features = *keyframe.features;
   const Eigen::Isometry3d T_camera_world = keyframe.T_world_camera.inverse();
-  LoopView view{keyframe.features, {}};
+  LoopView view{keyframe.features, {}, keyframe.id};
   view.p_camera.resize(features.size());
   for (std::size_t i = 0; i < features.size(); ++i) {
     const Landmark* landmark =

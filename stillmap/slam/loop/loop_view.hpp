@@ -14,6 +14,7 @@ struct LoopView {
   FeaturesPtr features;
   /// Per feature the point it sees, in the camera's frame, where one is known.
   std::vector<std::optional<Eigen::Vector3d>> p_camera;
+  KeyframeId keyframe;  ///< invalid for a view that is of none
 };
 
 /// The points are those of the key frame's landmarks, else what the sensor's depth says.

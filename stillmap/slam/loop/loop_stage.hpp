@@ -4,23 +4,23 @@
 #include <cstdint>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "stillmap/concurrency/job_ledger.hpp"
 #include "stillmap/concurrency/stage_probe.hpp"
 #include "stillmap/concurrency/worker.hpp"
-#include "stillmap/session/session.hpp"
 #include "stillmap/slam/loop/global_adjustment.hpp"
 #include "stillmap/slam/loop/loop_detector.hpp"
 
 namespace stillmap {
 
-/// Knows which places the key frames show, closes loops, and adjusts the whole world after each.
+/// Knows which places the key frames show, closes loops, and adjusts the whole submap after each.
 ///
 /// All calls that may move the map are made while no window of it is being worked on.
 class LoopStage {
  public:
-  /// `measure` trusts depth as far as the sensor earns it. The adjustment of the
-  /// world is what may run on a thread of its own. The same bits either way.
+  /// `measure` trusts depth as far as the sensor earns it. Only the adjustment of the submap may
+  /// run on a thread of its own. The same bits either way.
   LoopStage(const LoopConfig& config,
             const CameraModel& camera,
             const MeasurementModel& measure,
@@ -37,15 +37,16 @@ class LoopStage {
   void tracking_lost() { detector_.clear(); }
 
   /// Looks for a loop that ends in the newest key frame, to be called for each, and closes it: the
-  /// map is moved, its ends are merged, and an adjustment of the world begins. Says whether.
-  bool close(Session& session, KeyframeId newest, std::int64_t frame);
+  /// map is moved, its ends are merged, and an adjustment of the submap begins. Says whether it
+  /// closed one, which is then the last of `loops`, all those of this map.
+  bool close(Map& map, std::vector<LoopEdge>& loops, KeyframeId newest, std::int64_t frame);
 
   /// Brings adjustments that are due into the map. Says whether there was one.
   bool apply_due(Map& map, std::int64_t frame);
 
-  /// At the end: adjusts a world once more if this run has closed a loop, with all that has been
+  /// At the end: adjusts a submap once more if this run has closed a loop, with all that has been
   /// seen since.
-  void finish(Map& map, SubmapId world);
+  void finish(Map& map, SubmapId submap);
 
  private:
   using NumberedCorrection = std::pair<int, GlobalCorrection>;  // of the n-th loop

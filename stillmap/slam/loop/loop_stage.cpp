@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "stillmap/system/loop_stage.hpp"
+#include "stillmap/slam/loop/loop_stage.hpp"
 
 #include "stillmap/slam/loop/loop_closer.hpp"
 
@@ -18,15 +18,17 @@ LoopStage::LoopStage(const LoopConfig& config,
       adjustments_(worker_.get(),
                    [probe = options.probe] { begin_work(probe, Stage::kAdjustment); }) {}
 
-bool LoopStage::close(Session& session, KeyframeId newest, std::int64_t frame) {
+bool LoopStage::close(Map& map,
+                      std::vector<LoopEdge>& loops,
+                      KeyframeId newest,
+                      std::int64_t frame) {
   if (!config_.enabled) return false;
-  const std::optional<FoundLoop> found = detector_.advance(session.map, places_, newest);
+  const std::optional<LoopMatch> found = detector_.advance(map, places_, newest);
   if (!found) return false;
-  if (!close_loop(session.map, session.loops, *found, camera_, measure_, config_)) return false;
+  if (!close_loop(map, loops, *found, camera_, measure_, config_)) return false;
   detector_.clear();
   ++closed_;
-  auto window =
-      std::make_shared<Map>(submap_window(session.map, session.map.keyframe(newest).submap));
+  auto window = std::make_shared<Map>(submap_window(map, map.keyframe(newest).submap));
   adjustments_.submit(frame + config_.adjustment_lag_frames, [window, number = closed_, this] {
     return NumberedCorrection(
         number, adjust_globally(std::move(*window), camera_, measure_, config_.bundle));
@@ -44,10 +46,10 @@ bool LoopStage::apply_due(Map& map, std::int64_t frame) {
   return moved;
 }
 
-void LoopStage::finish(Map& map, SubmapId world) {
-  if (closed_ == 0 || !world.valid()) return;
+void LoopStage::finish(Map& map, SubmapId submap) {
+  if (closed_ == 0 || !submap.valid()) return;
   apply_correction(map,
-                   adjust_globally(submap_window(map, world), camera_, measure_, config_.bundle));
+                   adjust_globally(submap_window(map, submap), camera_, measure_, config_.bundle));
 }
 
 }  // namespace stillmap
