@@ -44,7 +44,7 @@ void make_local_cloud(benchmark::State& state) {
   config.islands = "on";
   std::size_t points = 0;
   for (auto _ : state) {
-    const cv::Mat1f depth = static_depth(frame.depth.mat, dynamic, config);
+    const cv::Mat1f depth = static_depth(frame.depth.mat, Mask(dynamic), config);
     const PointCloud cloud = local_cloud(depth, frame.color, rays, {});
     points = cloud.size();
     benchmark::DoNotOptimize(cloud.positions.data());
@@ -92,7 +92,7 @@ void make_range_image(benchmark::State& state) {
   cv::Mat1b moving(frame.depth.mat.size(), std::uint8_t{0});
   moving(cv::Rect(100, 100, 80, 300)).setTo(1);
   for (auto _ : state) {
-    benchmark::DoNotOptimize(range_image(frame.depth.mat, {moving, moving}, {}).cells.data());
+    benchmark::DoNotOptimize(range_image(frame.depth.mat, {Mask(moving), Mask(moving)}, {}).cells.data());
   }
 }
 BENCHMARK(make_range_image)->Unit(benchmark::kMillisecond);

@@ -20,7 +20,7 @@ DynamicRegions people(std::uint32_t step) {
 }
 
 void keep_view(benchmark::State& state) {
-  const CloudConfig config = CloudConfig{}.resolved_for("full");
+  const CloudConfig config = CloudConfig{}.resolved_for(dynamics_mode("full").cloud);
   const cv::Mat2f rays = pixel_rays(office().camera());
   const FramePtr frame = office().frame(0);
   const DynamicRegions masks = people(0);
@@ -35,7 +35,7 @@ void keep_view(benchmark::State& state) {
 
 /// Views of one place, again and again: as many as a run keeps in 4 and in 20 seconds there.
 void assemble_static_map(benchmark::State& state) {
-  const CloudConfig config = CloudConfig{}.resolved_for("full");
+  const CloudConfig config = CloudConfig{}.resolved_for(dynamics_mode("full").cloud);
   const cv::Mat2f rays = pixel_rays(office().camera());
   std::vector<StaticView> views;
   for (std::uint32_t k = 0; k < RenderedOffice::kFrames; ++k) {

@@ -54,9 +54,9 @@ void RelocationTrial::process(FrameObjects objects) {
   const FrameResult result = system_->process(shown_[processed_], std::move(objects));
   shown_[processed_].reset();  // its images take much room
   TrialFrame& frame = frames_[processed_++];
-  frame.status = result.tracked.status;
-  frame.inliers = result.tracked.inliers;
-  frame.T_world_camera = result.tracked.T_world_camera;
+  frame.status = result.status;
+  frame.inliers = result.tracked_features;
+  frame.T_world_camera = result.T_world_camera;
 }
 
 std::vector<TrialFrame> RelocationTrial::finish() {

@@ -51,7 +51,7 @@ class Scene {
     cv::Mat1f still = depth.clone();
     still.setTo(0, moving);
     clouds_.push_back(compact(local_cloud(still, color, pixel_rays(camera()), {})));
-    ranges_.push_back(range_image(depth, {moving, moving}, {}));
+    ranges_.push_back(range_image(depth, {Mask(moving), Mask(moving)}, {}));
   }
 
   /// How many points of each colour the map has with and without the check.
@@ -177,7 +177,7 @@ TEST(FreeSpace, SightingsAgreeWithBruteForce) {
     depth(cv::Rect(5 * i, 40, 20, 20)).setTo(0);
     cv::Mat1b moving(depth.size(), std::uint8_t{0});
     moving(cv::Rect(100 - 5 * i, 10, 40, 80)).setTo(1);
-    ranges.push_back(range_image(depth, {moving, moving}, {}));
+    ranges.push_back(range_image(depth, {Mask(moving), Mask(moving)}, {}));
   }
   for (const RangeImage& range : ranges) {
     const Eigen::Vector3d turn(unit(rng), unit(rng), unit(rng)), shift(unit(rng), unit(rng), 0);
@@ -272,7 +272,7 @@ TEST(RangeImage, IsTheLeastAroundAndKnowsWhatMoves) {
   excluded(0, 11) = 1;
   depth(4, 5) = 1.5F;
   depth(4, 4) = 0.5F;  // in the same block, but it does not move
-  const RangeImage image = range_image(depth, {excluded, moving}, {2, 1, 0.25});
+  const RangeImage image = range_image(depth, {Mask(excluded), Mask(moving)}, {2, 1, 0.25});
   ASSERT_EQ(image.columns, 6);
   ASSERT_EQ(image.rows, 4);
   for (int row = 0; row < 4; ++row) {
@@ -289,7 +289,7 @@ TEST(RangeImage, IsTheLeastAroundAndKnowsWhatMoves) {
   EXPECT_FALSE(range_image(depth, {}, {2, 0, 0.25}).at(3, 3).known());
   EXPECT_TRUE(range_image(depth, {}, {2, 0, 0.5}).at(3, 3).known());
   EXPECT_NEAR(RangeCell(1e9F, false).range_m(), 65.0F, 0.01F);
-  EXPECT_THROW((void)range_image(depth, {cv::Mat1b(3, 3), {}}, {}), InternalError);
+  EXPECT_THROW((void)range_image(depth, {Mask(cv::Mat1b(3, 3)), {}}, {}), InternalError);
 }
 
 }  // namespace

@@ -60,8 +60,9 @@ FrameDynamics judged(const Scene& scene) {
   config.mode = "full";
   RgbdFrame frame;
   frame.depth = scene.depth;
-  return DynamicsStage(config, synthetic_camera(320, 240), 0)
-      .judge(frame, scene.objects, std::nullopt);
+  const std::unique_ptr<DynamicsStage> stage =
+      make_dynamics_stage(config, synthetic_camera(320, 240), 0);
+  return stage->judge(frame, scene.objects, stage->measure(frame, scene.objects), std::nullopt);
 }
 
 const Thing kPerson{"person", {100, 40, 60, 180}, 1.5F};
@@ -77,7 +78,7 @@ TEST(LabelImage, HasStaticThingsAndNeverAPerson) {
   cv::Mat1b expected(240, 320, std::uint8_t{0});
   expected(kChairApart.area).setTo(kChair);
   expected(kScreen.area).setTo(kTv);
-  EXPECT_EQ(cv::countNonZero(label_image(scene.depth, dynamics) != expected), 0);
+  EXPECT_EQ(cv::countNonZero(label_image(scene.depth, dynamics).mat != expected), 0);
 }
 
 TEST(LabelImage, LeavesOutWhatAMaskHasOfTheWallAndOfNoDepth) {
@@ -85,7 +86,7 @@ TEST(LabelImage, LeavesOutWhatAMaskHasOfTheWallAndOfNoDepth) {
   const cv::Rect wall(240, 140, 5, 80), hole(260, 150, 4, 4);
   scene.depth.mat(wall).setTo(3.0F);
   scene.depth.mat(hole).setTo(0.0F);
-  const cv::Mat1b labels = label_image(scene.depth, judged(scene));
+  const cv::Mat1b labels = label_image(scene.depth, judged(scene)).mat;
   EXPECT_EQ(cv::countNonZero(labels(wall)), 0);
   EXPECT_EQ(cv::countNonZero(labels(hole)), 0);
   EXPECT_EQ(cv::countNonZero(labels), kChairApart.area.area() - wall.area() - hole.area());
@@ -95,7 +96,7 @@ TEST(LabelImage, ABoxInPlaceOfAMaskIsNoLabel) {
   Scene scene = scene_of({kChairApart, kScreen});
   scene.objects.objects[0].mask_source = MaskSource::kBox;
   scene.objects.objects[1].mask_source = MaskSource::kCarried;
-  const cv::Mat1b labels = label_image(scene.depth, judged(scene));
+  const cv::Mat1b labels = label_image(scene.depth, judged(scene)).mat;
   EXPECT_EQ(cv::countNonZero(labels), kScreen.area.area());
 }
 

@@ -52,7 +52,7 @@ PointCloud cloud_of(const RgbdFrame& frame,
                     const CameraModel& camera,
                     const LocalCloudConfig& config = {},
                     const cv::Mat1b& labels = {}) {
-  return local_cloud(frame.depth.mat, frame.color, pixel_rays(camera), config, labels);
+  return local_cloud(frame.depth.mat, frame.color, pixel_rays(camera), config, LabelImage(labels));
 }
 
 TEST(LocalCloud, OnePixelIsItsRayTimesItsDepth) {

@@ -173,7 +173,7 @@ TEST(StaticDepth, EachStepOnlyWhenAsked) {
   dynamic(cv::Rect(0, 0, 10, 48)).setTo(3);
 
   StaticDepthConfig config;
-  const cv::Mat1f plain = static_depth(depth, dynamic, config);
+  const cv::Mat1f plain = static_depth(depth, Mask(dynamic), config);
   EXPECT_EQ(known(plain), 30 * 48 - 1);
   EXPECT_EQ(known(plain(cv::Rect(0, 0, 10, 48))), 0);
   EXPECT_EQ(plain(0, 12), 0.0F);
@@ -181,7 +181,7 @@ TEST(StaticDepth, EachStepOnlyWhenAsked) {
   EXPECT_EQ(known(static_depth(depth, {}, config)), 40 * 48 - 1);
 
   config.edges = "fixed";
-  const cv::Mat1f cut = static_depth(depth, dynamic, config);
+  const cv::Mat1f cut = static_depth(depth, Mask(dynamic), config);
   // The rim before the far wall is gone too, and the ring around the small thing: the pixels whose
   // window has it in part, which are its own lower right ones and those left and above.
   EXPECT_EQ(known(cut), 29 * 48 - 1 - (25 - 9));
@@ -189,12 +189,12 @@ TEST(StaticDepth, EachStepOnlyWhenAsked) {
 
   config.islands = "on";
   config.min_island_share = 17.0 / (48 * 64);
-  const cv::Mat1f clean = static_depth(depth, dynamic, config);
+  const cv::Mat1f clean = static_depth(depth, Mask(dynamic), config);
   EXPECT_EQ(clean(22, 22), 0.0F);
   EXPECT_EQ(known(clean), 29 * 48 - 1 - 25);
 
   config.max_depth_m = 8;
-  EXPECT_EQ(known(static_depth(depth, dynamic, config)), 29 * 48 - 1 - 25 + 24 * 48);
+  EXPECT_EQ(known(static_depth(depth, Mask(dynamic), config)), 29 * 48 - 1 - 25 + 24 * 48);
 }
 
 TEST(StaticDepth, TheGrowingThresholdOnlyWhereAskedFor) {
@@ -208,7 +208,7 @@ TEST(StaticDepth, TheGrowingThresholdOnlyWhereAskedFor) {
 }
 
 TEST(StaticDepth, RefusesAMaskOfAnotherSize) {
-  EXPECT_THROW((void)static_depth(cv::Mat1f(4, 4, 1.0F), cv::Mat1b(4, 5), {}), InternalError);
+  EXPECT_THROW((void)static_depth(cv::Mat1f(4, 4, 1.0F), Mask(cv::Mat1b(4, 5)), {}), InternalError);
   EXPECT_TRUE(static_depth(cv::Mat1f(), {}, {}).empty());
 }
 

@@ -11,24 +11,24 @@ namespace {
 TEST(CloudConfig, TheModeDecidesWhatIsLeftToIt) {
   const CloudConfig config;
   for (const char* mode : {"off", "mask"}) {
-    EXPECT_EQ(config.resolved_for(mode).depth.edges, "off");
-    EXPECT_EQ(config.resolved_for(mode).depth.islands, "off");
-    EXPECT_EQ(config.resolved_for(mode).free_space, "off");
+    EXPECT_EQ(config.resolved_for(dynamics_mode(mode).cloud).depth.edges, "off");
+    EXPECT_EQ(config.resolved_for(dynamics_mode(mode).cloud).depth.islands, "off");
+    EXPECT_EQ(config.resolved_for(dynamics_mode(mode).cloud).free_space, "off");
   }
-  EXPECT_EQ(config.resolved_for("paper").depth.edges, "fixed");
-  EXPECT_EQ(config.resolved_for("paper").depth.islands, "on");
-  EXPECT_EQ(config.resolved_for("paper").free_space, "off");
-  EXPECT_EQ(config.resolved_for("full").depth.edges, "growing");
-  EXPECT_EQ(config.resolved_for("full").depth.islands, "off");
-  EXPECT_EQ(config.resolved_for("full").free_space, "on");
+  EXPECT_EQ(config.resolved_for(dynamics_mode("paper").cloud).depth.edges, "fixed");
+  EXPECT_EQ(config.resolved_for(dynamics_mode("paper").cloud).depth.islands, "on");
+  EXPECT_EQ(config.resolved_for(dynamics_mode("paper").cloud).free_space, "off");
+  EXPECT_EQ(config.resolved_for(dynamics_mode("full").cloud).depth.edges, "growing");
+  EXPECT_EQ(config.resolved_for(dynamics_mode("full").cloud).depth.islands, "off");
+  EXPECT_EQ(config.resolved_for(dynamics_mode("full").cloud).free_space, "on");
 
   CloudConfig own;
   own.depth.edges = "off";
   own.depth.islands = "on";
   own.free_space = "on";
-  EXPECT_EQ(own.resolved_for("full").depth.edges, "off");
-  EXPECT_EQ(own.resolved_for("full").depth.islands, "on");
-  EXPECT_EQ(own.resolved_for("paper").free_space, "on");
+  EXPECT_EQ(own.resolved_for(dynamics_mode("full").cloud).depth.edges, "off");
+  EXPECT_EQ(own.resolved_for(dynamics_mode("full").cloud).depth.islands, "on");
+  EXPECT_EQ(own.resolved_for(dynamics_mode("paper").cloud).free_space, "on");
 }
 
 /// A wall at 3 m, with somebody before it at 1.5 m or not.
@@ -56,7 +56,7 @@ TEST(CloudStage, OnlyFullRemovesWhatLaterViewsSeeThrough) {
   const CameraModel camera = builtin_camera("tum_fr3");
   const cv::Mat2f rays = pixel_rays(camera);
   for (const char* mode : {"off", "mask", "paper", "full"}) {
-    const CloudConfig config = CloudConfig{}.resolved_for(mode);
+    const CloudConfig config = CloudConfig{}.resolved_for(dynamics_mode(mode).cloud);
     std::vector<StaticView> views;
     for (int i = 0; i < 4; ++i) {
       views.push_back(static_view(wall(camera, i < 2), rays, config, {}, {}));
@@ -77,9 +77,9 @@ TEST(CloudStage, AViewLeavesOutWhatIsExcluded) {
   const CameraModel camera = builtin_camera("tum_fr3");
   cv::Mat1b somebody(480, 640, std::uint8_t{0});
   somebody(cv::Rect(195, 95, 90, 210)).setTo(1);
-  const CloudConfig config = CloudConfig{}.resolved_for("full");
+  const CloudConfig config = CloudConfig{}.resolved_for(dynamics_mode("full").cloud);
   const StaticView view =
-      static_view(wall(camera, true), pixel_rays(camera), config, {somebody, somebody}, {});
+      static_view(wall(camera, true), pixel_rays(camera), config, {Mask(somebody), Mask(somebody)}, {});
   EXPECT_EQ(near_points(view.cloud), 0U);
   EXPECT_TRUE(view.range.at(100, 120).moving());  // half the resolution: row 200, column 240
   EXPECT_NEAR(view.range.at(100, 120).range_m(), 1.5F, 0.002F);
@@ -90,17 +90,17 @@ TEST(CloudStage, AViewLeavesOutWhatIsExcluded) {
 
 TEST(CloudStage, SmallJumpsAreUnclearLargeOnesMove) {
   FrameDynamics dynamics;
-  dynamics.judged.mask.extended = cv::Mat1b(480, 640, std::uint8_t{0});
-  dynamics.judged.mask.jumps = cv::Mat1b(480, 640, std::uint8_t{0});
-  dynamics.judged.mask.extended(cv::Rect(10, 10, 5, 5)).setTo(2);
-  dynamics.judged.mask.jumps(cv::Rect(100, 100, 8, 30)).setTo(1);
-  dynamics.judged.mask.jumps(cv::Rect(200, 100, 9, 30)).setTo(1);
-  dynamics.excluded = dynamics.judged.mask.jumps | dynamics.judged.mask.extended;
+  dynamics.judged.mask.extended = ObjectMask(cv::Mat1b(480, 640, std::uint8_t{0}));
+  dynamics.judged.mask.jumps = JumpImage(cv::Mat1b(480, 640, std::uint8_t{0}));
+  dynamics.judged.mask.extended.mat(cv::Rect(10, 10, 5, 5)).setTo(2);
+  dynamics.judged.mask.jumps.mat(cv::Rect(100, 100, 8, 30)).setTo(1);
+  dynamics.judged.mask.jumps.mat(cv::Rect(200, 100, 9, 30)).setTo(1);
+  dynamics.excluded = dynamics.judged.mask.all();
   const DynamicRegions masks = dynamic_regions(dynamics.judged.mask, dynamics.excluded);
-  EXPECT_NE(masks.moving(12, 12), 0);
-  EXPECT_EQ(masks.moving(110, 104), 0);
-  EXPECT_NE(masks.moving(110, 204), 0);
-  EXPECT_NE(masks.excluded(110, 104), 0);
+  EXPECT_NE(masks.moving.mat(12, 12), 0);
+  EXPECT_EQ(masks.moving.mat(110, 104), 0);
+  EXPECT_NE(masks.moving.mat(110, 204), 0);
+  EXPECT_NE(masks.excluded.mat(110, 104), 0);
   EXPECT_TRUE(dynamic_regions({}, {}).moving.empty());
 }
 

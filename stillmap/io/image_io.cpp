@@ -58,12 +58,6 @@ cv::Mat1b read_mask(const std::filesystem::path& path) {
   return cv::Mat1b(decode_png(bytes, PngKind::kGray8, path.string()));
 }
 
-GrayImage to_gray(const ColorImage& color) {
-  GrayImage gray;
-  cv::cvtColor(color.mat, gray.mat, cv::COLOR_RGB2GRAY);
-  return gray;
-}
-
 std::vector<std::uint8_t> encode_jpeg(const ColorImage& color, int quality) {
   return encode_jpeg_bytes(color.mat, quality);
 }

@@ -37,9 +37,6 @@ class DamagedImage : public Error {
 /// An 8-bit gray PNG whose pixels are numbers, such as the ids of objects.
 [[nodiscard]] cv::Mat1b read_mask(const std::filesystem::path& path);
 
-/// Brightness by ITU-R BT.601: 0.299 R + 0.587 G + 0.114 B.
-[[nodiscard]] GrayImage to_gray(const ColorImage& color);
-
 /// `quality` is from 1 to 100.
 [[nodiscard]] std::vector<std::uint8_t> encode_jpeg(const ColorImage& color, int quality);
 

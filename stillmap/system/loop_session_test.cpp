@@ -66,7 +66,7 @@ void process(System& system, std::uint32_t begin, std::uint32_t end) {
 
 void cover(System& system, std::uint32_t begin, std::uint32_t end) {
   for (std::uint32_t k = begin; k < end; k += 2) {
-    EXPECT_EQ(system.process(dark_frame(k)).tracked.status, TrackingStatus::kLost);
+    EXPECT_EQ(system.process(dark_frame(k)).status, TrackingStatus::kLost);
   }
 }
 

@@ -39,12 +39,12 @@ Json object_json(const LoggedObject& object, const Eigen::Isometry3d* T_world_ca
   const ObjectState& state = object.state;
   const PixelBox& box = state.box;
   return {{"track", state.track.value},
-          {"class", object.class_name},
+          {"class", state.class_name},
           {"category", category_name(state.category)},
           {"state", state.dynamic ? "dynamic" : "static"},
           {"reason", reason_name(state.reason)},
-          {"motion", motion_name(object.motion)},
-          {"by", track_json(object.by)},
+          {"motion", motion_name(state.motion.state)},
+          {"by", track_json(state.motion.by)},
           {"person", track_json(state.person)},
           {"box", {rounded(box.x0, 1), rounded(box.y0, 1), rounded(box.x1, 1), rounded(box.y1, 1)}},
           {"filled", state.filled},
@@ -62,14 +62,14 @@ Key most_frequent(const std::map<Key, std::size_t>& counts) {
 struct TrackCounts {
   std::map<std::string, std::size_t> classes;
   std::map<StateReason, std::size_t> reasons;
-  std::map<Motion, std::size_t> motions;
+  std::map<MotionState, std::size_t> motions;
   ObjectSummary summary;
 };
 
 void count(TrackCounts& counts, const LoggedObject& object) {
-  ++counts.classes[object.class_name];
+  ++counts.classes[object.state.class_name];
   ++counts.reasons[object.state.reason];
-  ++counts.motions[object.motion];
+  ++counts.motions[object.state.motion.state];
   ObjectSummary& summary = counts.summary;
   summary.track = object.state.track.value;
   summary.category = category_name(object.state.category);
@@ -80,25 +80,15 @@ void count(TrackCounts& counts, const LoggedObject& object) {
 
 }  // namespace
 
-LoggedFrame log_frame(const Stamp& stamp, const FrameResult& result) {
-  const FrameDynamics& dynamics = result.dynamics;
-  const std::vector<ObjectState>& states = dynamics.judged.states;
-  STILLMAP_CHECK(states.size() == dynamics.objects.objects.size());
-  STILLMAP_CHECK(dynamics.motions.empty() || dynamics.motions.size() == states.size());
-  const Eigen::Isometry3d T_camera_world = result.tracked.T_world_camera.inverse();
-  LoggedFrame frame{stamp, {}};
-  for (std::size_t i = 0; i < states.size(); ++i) {
-    LoggedObject object;
-    object.class_name = dynamics.objects.objects[i].detection.class_name;
-    object.state = states[i];
-    if (!dynamics.motions.empty()) {
-      const ObjectMotion& motion = dynamics.motions[i];
-      object.motion = motion.motion;
-      object.by = motion.by;
-      if (motion.p_world) object.p_camera = T_camera_world * *motion.p_world;
-      if (motion.motion != Motion::kUnknown) {
-        object.v_camera_m_s = T_camera_world.linear() * motion.velocity_m_s;
-      }
+LoggedFrame log_frame(const FrameResult& result) {
+  const Eigen::Isometry3d T_camera_world = result.T_world_camera.inverse();
+  LoggedFrame frame{result.stamp, {}};
+  for (const ObjectState& state : result.objects) {
+    LoggedObject object{state, {}, {}};
+    const Motion& motion = state.motion;
+    if (motion.p_world) object.p_camera = T_camera_world * *motion.p_world;
+    if (motion.state != MotionState::kUnknown) {
+      object.v_camera_m_s = T_camera_world.linear() * motion.velocity_m_s;
     }
     frame.objects.push_back(std::move(object));
   }

@@ -9,9 +9,7 @@
 #include <Eigen/Core>
 
 #include "stillmap/core/trajectory.hpp"
-#include "stillmap/perception/motion/dynamic_objects.hpp"
-#include "stillmap/perception/motion/motion_estimator.hpp"
-#include "stillmap/system/frame_result.hpp"
+#include "stillmap/system/results.hpp"
 #include "tooling/report/run_report.hpp"
 
 namespace stillmap {
@@ -19,10 +17,7 @@ namespace stillmap {
 /// What a run keeps of an object in a frame. Place and velocity are in the camera's axes, so that a
 /// later correction of the frame's pose moves them too.
 struct LoggedObject {
-  std::string class_name;
   ObjectState state;
-  Motion motion = Motion::kUnknown;
-  std::optional<TrackId> by;                    ///< who moves it
   std::optional<Eigen::Vector3d> p_camera;      ///< middle of what is seen of it
   std::optional<Eigen::Vector3d> v_camera_m_s;  ///< its own velocity; none where not known
 };
@@ -33,7 +28,7 @@ struct LoggedFrame {
 };
 
 /// What is to be kept of a frame that dynamics was run on.
-[[nodiscard]] LoggedFrame log_frame(const Stamp& stamp, const FrameResult& result);
+[[nodiscard]] LoggedFrame log_frame(const FrameResult& result);
 
 /// The lines of objects.jsonl, one a frame, in order; each is a JSON object:
 /// `{"stamp","objects":[{"track","class","category","state","reason","motion","by","person","box",

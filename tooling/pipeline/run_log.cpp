@@ -38,7 +38,7 @@ void add_map_at_true_poses(SequenceRun& run, const System& system, const Traject
                     unknown,
                     poses.size()));
   }
-  run.map_at_true_poses = system.cloud_with_poses(poses);
+  run.map_at_true_poses = system.map_with_poses(poses);
 }
 
 }  // namespace
@@ -48,7 +48,7 @@ RunLog::RunLog(const TumSequence& sequence,
                const RunOptions& options,
                std::size_t frames)
     : sequence_(sequence), options_(options) {
-  with_objects_ = options.segmenter != nullptr && config.dynamics.mode != "off";
+  with_objects_ = options.segmenter != nullptr && dynamics_mode(config.dynamics.mode).judges;
   run_.report.sequence = sequence.name();
   run_.report.frames_total = frames;
   run_.report.dynamics_mode = config.dynamics.mode;
@@ -67,10 +67,10 @@ void RunLog::add_stage_time(std::string_view stage, double ms) {
 void RunLog::add(const RgbdFrame& frame, const FrameResult& result) {
   RunReport& report = run_.report;
   report.frame_ms.push_back(result.pose_ms);
-  report.tracked_features.push_back(result.tracked.inliers);
+  report.tracked_features.push_back(result.tracked_features);
   for (const StageTime& time : result.stages) add_stage_time(time.stage, time.ms);
-  if (!has_pose(result.tracked)) report.lost.push_back(frame.stamp);
-  if (with_objects_) objects_.push_back(log_frame(frame.stamp, result));
+  if (!has_pose(result)) report.lost.push_back(frame.stamp);
+  if (with_objects_) objects_.push_back(log_frame(result));
   const std::size_t total = report.frames_total;
   if (done_ * kSamples / total != (done_ + 1) * kSamples / total) {
     report.samples.push_back(make_sample(frame, result));

@@ -6,10 +6,10 @@
 namespace stillmap {
 namespace {
 
-SampleObject make_sample_object(const TrackedObject& object, const ObjectState& state) {
+SampleObject make_sample_object(const ObjectState& state) {
   const PixelBox& box = state.box;
   return {.track = state.track.value,
-          .class_name = object.detection.class_name,
+          .class_name = state.class_name,
           .reason = std::string(reason_name(state.reason)),
           .dynamic = state.dynamic,
           .filled = state.filled,
@@ -39,25 +39,15 @@ SampleFrame make_sample(const RgbdFrame& frame, const FrameResult& result) {
   SampleFrame sample;
   sample.stamp = frame.stamp;
   sample.image = frame.color;
-  const TrackedFrame& tracked = result.tracked;
-  const FrameDynamics& dynamics = result.dynamics;
-  for (std::size_t i = 0; i < tracked.landmarks.size(); ++i) {
-    // Without dynamics no feature is judged.
-    const FeatureVerdict verdict =
-        dynamics.verdicts.empty() ? FeatureVerdict::kStable : dynamics.verdicts[i];
-    sample.features.push_back(
-        {tracked.features->raw_px[i], sample_verdict(verdict, tracked.landmarks[i].valid())});
+  for (const FeatureMark& feature : result.features) {
+    sample.features.push_back({feature.raw_px, sample_verdict(feature.verdict, feature.tracked)});
   }
-  for (const RejectedFeature& feature : dynamics.dropped) {
-    sample.features.push_back({feature.raw_px, sample_verdict(feature.verdict, false)});
+  for (const ObjectState& state : result.objects) {
+    sample.objects.push_back(make_sample_object(state));
   }
-  for (std::size_t i = 0; i < dynamics.judged.states.size(); ++i) {
-    sample.objects.push_back(
-        make_sample_object(dynamics.objects.objects[i], dynamics.judged.states[i]));
-  }
-  sample.raw_mask = dynamics.judged.mask.raw;
-  sample.extended_mask = dynamics.judged.mask.extended;
-  sample.jumps = dynamics.judged.mask.jumps;
+  sample.raw_mask = result.network_mask.mat;
+  sample.extended_mask = result.extended_mask.mat;
+  sample.jumps = result.depth_jumps.mat;
   return sample;
 }
 

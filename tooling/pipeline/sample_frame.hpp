@@ -2,7 +2,7 @@
 #pragma once
 
 #include "stillmap/core/rgbd_frame.hpp"
-#include "stillmap/system/frame_result.hpp"
+#include "stillmap/system/results.hpp"
 #include "tooling/report/run_report.hpp"
 
 namespace stillmap {

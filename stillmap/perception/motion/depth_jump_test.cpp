@@ -53,7 +53,7 @@ int count(const cv::Mat1b& jumps, DepthJump kind) {
 TEST(DepthJumps, OfEquation6ByHand) {
   const DepthImage before(cv::Mat1f((cv::Mat_<float>(1, 6) << 2.0F, 2.0F, 2.0F, 0.0F, 2.0F, 3.5F)));
   const DepthImage now(cv::Mat1f((cv::Mat_<float>(1, 6) << 2.9F, 3.1F, 0.9F, 5.0F, 0.0F, 3.5F)));
-  const cv::Mat1b jumps = depth_jumps(now, before, 1.0);
+  const cv::Mat1b jumps = depth_jumps(now, before, 1.0).mat;
   EXPECT_EQ(jumps(0, 0), kNoJump);
   EXPECT_EQ(jumps(0, 1), kWentFarther);
   EXPECT_EQ(jumps(0, 2), kCameNearer);
@@ -68,7 +68,7 @@ TEST(DepthWarper, PutsPointsWhereTheCameraSeesThem) {
     const Eigen::Isometry3d T_world_current = moved();
     const DepthImage before = see(camera, Eigen::Isometry3d::Identity(), false);
     const DepthImage now = see(camera, T_world_current, false);
-    const WarpedDepth warped = DepthWarper(camera).warp(before, T_world_current.inverse());
+    const HalfDepth warped = DepthWarper(camera).warp(before, T_world_current.inverse());
     ASSERT_EQ(warped.mat.size(), cv::Size(160, 120));
     int known = 0, close = 0;
     for (int v = 0; v < 120; ++v) {
@@ -90,7 +90,7 @@ TEST(DepthWarper, TheNearestOfSeveralPointsWins) {
   before.mat(cv::Rect(150, 110, 20, 20)).setTo(1.0F);
   // From 0.5 m to the right the near square is 67 pixels farther left, before what was there.
   const Eigen::Isometry3d T = make_pose(Eigen::Quaterniond::Identity(), {-0.5, 0, 0});
-  const WarpedDepth warped = DepthWarper(camera).warp(before, T);
+  const HalfDepth warped = DepthWarper(camera).warp(before, T);
   const int shift = static_cast<int>(std::lround(camera.fx * 0.5 / 1.0));
   EXPECT_EQ(warped.mat(60, (160 - shift) / 2), 1.0F);
 }
@@ -102,10 +102,10 @@ TEST(DepthJumps, AStaticSceneHasNoneWhereTheMotionIsKnown) {
     const DepthImage now = see(camera, moved(), false);
     DepthJumpConfig config;
     config.revealed = true;
-    const WarpedDepth warped = DepthWarper(camera).warp(before, moved().inverse());
-    const cv::Mat1b jumps = depth_jumps(now, warped, config);
+    const HalfDepth warped = DepthWarper(camera).warp(before, moved().inverse());
+    const cv::Mat1b jumps = depth_jumps(now, warped, config).mat;
     EXPECT_EQ(cv::countNonZero(jumps), 0);
-    EXPECT_GT(cv::countNonZero(depth_jumps(now, before, 1.0)), 500);  // without the warp
+    EXPECT_GT(cv::countNonZero(depth_jumps(now, before, 1.0).mat), 500);  // without the warp
   }
 }
 
@@ -113,8 +113,8 @@ TEST(DepthJumps, WhatCameIntoTheSceneIsFound) {
   const CameraModel camera = small_camera(false);
   const DepthImage before = see(camera, Eigen::Isometry3d::Identity(), false);
   const DepthImage now = see(camera, moved(), true);
-  const WarpedDepth warped = DepthWarper(camera).warp(before, moved().inverse());
-  const cv::Mat1b jumps = depth_jumps(now, warped, {});
+  const HalfDepth warped = DepthWarper(camera).warp(before, moved().inverse());
+  const cv::Mat1b jumps = depth_jumps(now, warped, {}).mat;
   const cv::Mat1b truth = see(camera, moved(), false).mat - now.mat > 1.0F;
   EXPECT_GT(cv::countNonZero(truth), 500);
   EXPECT_GT(cv::countNonZero(truth & (jumps == kCameNearer)), 0.6 * cv::countNonZero(truth));
@@ -125,11 +125,11 @@ TEST(DepthJumps, WhatWentAwayOnlyWhenAsked) {
   const CameraModel camera = small_camera(false);
   const DepthImage before = see(camera, Eigen::Isometry3d::Identity(), true);
   const DepthImage now = see(camera, moved(), false);
-  const WarpedDepth warped = DepthWarper(camera).warp(before, moved().inverse());
+  const HalfDepth warped = DepthWarper(camera).warp(before, moved().inverse());
   DepthJumpConfig config;
-  EXPECT_EQ(cv::countNonZero(depth_jumps(now, warped, config)), 0);
+  EXPECT_EQ(cv::countNonZero(depth_jumps(now, warped, config).mat), 0);
   config.revealed = true;
-  EXPECT_GT(count(depth_jumps(now, warped, config), kWentFarther), 300);
+  EXPECT_GT(count(depth_jumps(now, warped, config).mat, kWentFarther), 300);
 }
 
 TEST(DepthJumps, MissingDepthIsNone) {
@@ -139,8 +139,8 @@ TEST(DepthJumps, MissingDepthIsNone) {
   config.revealed = true;
   const DepthWarper warper(camera);
   const Eigen::Isometry3d still = Eigen::Isometry3d::Identity();
-  EXPECT_EQ(cv::countNonZero(depth_jumps(wall, warper.warp(nothing, still), config)), 0);
-  EXPECT_EQ(cv::countNonZero(depth_jumps(nothing, warper.warp(wall, still), config)), 0);
+  EXPECT_EQ(cv::countNonZero(depth_jumps(wall, warper.warp(nothing, still), config).mat), 0);
+  EXPECT_EQ(cv::countNonZero(depth_jumps(nothing, warper.warp(wall, still), config).mat), 0);
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ struct Office {
     }
   }
 
-  [[nodiscard]] DynamicsResult judge(DynamicsMode mode,
+  [[nodiscard]] DynamicsResult judge(const DynamicsMode& mode,
                                      std::span<const TrackId> moving = {}) const {
     return DynamicObjects({}, builtin_camera("tum_fr3"), mode).judge(depth, objects, {}, moving);
   }
@@ -62,7 +62,7 @@ std::vector<StateReason> reasons(const DynamicsResult& result) {
 
 TEST(DynamicObjects, JudgesEachObjectWithAReason) {
   const Office office;
-  const DynamicsResult result = office.judge(DynamicsMode::kPaper);
+  const DynamicsResult result = office.judge(dynamics_mode("paper"));
   EXPECT_EQ(reasons(result),
             (std::vector<StateReason>{StateReason::kDynamicClass,
                                       StateReason::kTouching,
@@ -74,49 +74,49 @@ TEST(DynamicObjects, JudgesEachObjectWithAReason) {
   EXPECT_EQ(result.states[1].person, TrackId(1));
   EXPECT_EQ(result.states[2].person, TrackId(1));
   EXPECT_FALSE(result.states[3].person);
-  EXPECT_EQ(result.mask.raw(100, 250), 1);
-  EXPECT_EQ(result.mask.raw(300, 350), 2);
-  EXPECT_EQ(result.mask.raw(300, 170), 0);
+  EXPECT_EQ(result.mask.raw.mat(100, 250), 1);
+  EXPECT_EQ(result.mask.raw.mat(300, 350), 2);
+  EXPECT_EQ(result.mask.raw.mat(300, 170), 0);
   EXPECT_TRUE(result.mask.covers(300, 350));
   EXPECT_FALSE(result.mask.covers(300, 550));
 }
 
 TEST(DynamicObjects, MaskModeTakesPeopleAsTheNetworkHasThem) {
-  const DynamicsResult result = Office().judge(DynamicsMode::kMask);
+  const DynamicsResult result = Office().judge(dynamics_mode("mask"));
   EXPECT_EQ(reasons(result),
             (std::vector<StateReason>{StateReason::kDynamicClass,
                                       StateReason::kNotAsked,
                                       StateReason::kNotAsked,
                                       StateReason::kNotAsked,
                                       StateReason::kStaticClass}));
-  EXPECT_EQ(cv::countNonZero(result.mask.extended != result.mask.raw), 0);
-  EXPECT_EQ(cv::countNonZero(result.mask.raw), 100 * 350);
+  EXPECT_EQ(cv::countNonZero(result.mask.extended.mat != result.mask.raw.mat), 0);
+  EXPECT_EQ(cv::countNonZero(result.mask.raw.mat), 100 * 350);
 }
 
 TEST(DynamicObjects, WhatHasBeenSeenToMoveIsDynamicInFullAlone) {
   const std::vector<TrackId> moving{TrackId(4), TrackId(5)};
-  const DynamicsResult full = Office().judge(DynamicsMode::kFull, moving);
+  const DynamicsResult full = Office().judge(dynamics_mode("full"), moving);
   EXPECT_EQ(full.states[3].reason, StateReason::kMoving);
   EXPECT_TRUE(full.states[3].dynamic && full.states[4].dynamic);
-  EXPECT_EQ(full.mask.raw(300, 550), 4);
-  EXPECT_FALSE(Office().judge(DynamicsMode::kPaper, moving).states[3].dynamic);
+  EXPECT_EQ(full.mask.raw.mat(300, 550), 4);
+  EXPECT_FALSE(Office().judge(dynamics_mode("paper"), moving).states[3].dynamic);
 }
 
 TEST(DynamicObjects, ABoxInPlaceOfAMaskIsTakenWhole) {
   Office office;
   office.objects.objects[0].mask_source = MaskSource::kBox;
   office.depth.mat(cv::Rect(200, 50, 100, 150)).setTo(5.0F);  // half of it is wall
-  const DynamicsResult result = office.judge(DynamicsMode::kFull);
-  EXPECT_EQ(cv::countNonZero(result.mask.extended == 1), 100 * 350);
+  const DynamicsResult result = office.judge(dynamics_mode("full"));
+  EXPECT_EQ(cv::countNonZero(result.mask.extended.mat == 1), 100 * 350);
 }
 
 TEST(DynamicObjects, AnEmptyFrameHasNothing) {
   const DepthImage depth(cv::Mat1f(480, 640, 2.0F));
   const DynamicsResult result =
-      DynamicObjects({}, builtin_camera("tum_fr3"), DynamicsMode::kFull)
+      DynamicObjects({}, builtin_camera("tum_fr3"), dynamics_mode("full"))
           .judge(depth, {}, std::array{PreviousDepth{depth, Eigen::Isometry3d::Identity()}});
   EXPECT_TRUE(result.states.empty());
-  EXPECT_EQ(cv::countNonZero(result.mask.extended | result.mask.jumps | result.mask.raw), 0);
+  EXPECT_EQ(cv::countNonZero(result.mask.all().mat | result.mask.raw.mat), 0);
 }
 
 TEST(DynamicObjects, GarbageInTheDepthHarmsNothing) {
@@ -127,12 +127,12 @@ TEST(DynamicObjects, GarbageInTheDepthHarmsNothing) {
     if (rng.uniform(0, 3) == 0) z = garbage[static_cast<std::size_t>(rng.uniform(0, 7))];
   }
   const std::array before{PreviousDepth{office.depth, Eigen::Isometry3d::Identity()}};
-  for (const DynamicsMode mode : {DynamicsMode::kPaper, DynamicsMode::kFull}) {
-    const DynamicsResult result = DynamicObjects({}, builtin_camera("tum_fr3"), mode)
+  for (const char* mode : {"paper", "full"}) {
+    const DynamicsResult result = DynamicObjects({}, builtin_camera("tum_fr3"), dynamics_mode(mode))
                                       .judge(office.depth, office.objects, before);
     EXPECT_EQ(result.states[0].reason, StateReason::kDynamicClass);
-    EXPECT_GE(cv::countNonZero(result.mask.extended == 1), 100 * 350);
-    EXPECT_EQ(cv::countNonZero(result.mask.jumps & ~(office.depth.mat > 0)), 0);
+    EXPECT_GE(cv::countNonZero(result.mask.extended.mat == 1), 100 * 350);
+    EXPECT_EQ(cv::countNonZero(result.mask.jumps.mat & ~(office.depth.mat > 0)), 0);
   }
 }
 
@@ -164,11 +164,11 @@ SequenceFrame frame_with_objects(const TruthSequence& data, std::uint32_t index)
 }
 
 /// What a mode covers in every ninth frame of a sequence, true poses given.
-Result run_on(const TruthSequence& data, DynamicsMode mode) {
+Result run_on(const TruthSequence& data, const DynamicsMode& mode) {
   const TumSequence& sequence = data.sequence();
   const Trajectory poses = read_trajectory(*sequence.groundtruth_file());
   const DynamicObjects dynamics({}, sequence.camera(), mode);
-  const std::uint32_t back = mode == DynamicsMode::kFull ? 15 : 1;
+  const std::uint32_t back = mode.jumps == JumpRule::kWarpedFrames ? 15 : 1;
   Result result;
   for (std::uint32_t i = 16; i < sequence.size(); i += 9) {
     const auto [old, old_objects] = frame_with_objects(data, i - back);
@@ -176,16 +176,16 @@ Result run_on(const TruthSequence& data, DynamicsMode mode) {
     const std::array before{PreviousDepth{
         old->depth,
         pose_at(poses, frame->stamp.seconds).inverse() * pose_at(poses, old->stamp.seconds),
-        dynamics.judge(old->depth, old_objects, {}).mask.extended}};
+        Mask(dynamics.judge(old->depth, old_objects, {}).mask.extended.mat)}};
     const auto begin = std::chrono::steady_clock::now();
     const DynamicsResult judged = dynamics.judge(frame->depth, objects, before);
     const std::chrono::duration<double, std::milli> spent =
         std::chrono::steady_clock::now() - begin;
     result.ms.push_back(spent.count());
     const TruthSequence::Frame truth = data.truth(i);
-    result.raw.add(judged.mask.raw, truth);
-    result.extended.add(judged.mask.extended, truth);
-    result.all.add(judged.mask.extended | judged.mask.jumps, truth);
+    result.raw.add(judged.mask.raw.mat, truth);
+    result.extended.add(judged.mask.extended.mat, truth);
+    result.all.add(judged.mask.all().mat, truth);
   }
   return result;
 }
@@ -208,9 +208,9 @@ TEST(DynamicObjects, CoverWhatMovesOnTruth) {
     const std::unique_ptr<TruthSequence> data = TruthSequence::open(shared_data_folder() / name);
     if (!data) GTEST_SKIP() << "the shared test data is absent (set STILLMAP_DATA)";
     SCOPED_TRACE(name);
-    const Result mask = run_on(*data, DynamicsMode::kMask);
-    const Result paper = run_on(*data, DynamicsMode::kPaper);
-    const Result full = run_on(*data, DynamicsMode::kFull);
+    const Result mask = run_on(*data, dynamics_mode("mask"));
+    const Result paper = run_on(*data, dynamics_mode("paper"));
+    const Result full = run_on(*data, dynamics_mode("full"));
     fmt::print("{}\n", name);
     print("  mask", mask);
     print("  paper", paper);

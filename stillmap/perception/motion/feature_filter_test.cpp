@@ -109,7 +109,7 @@ TEST(MatchConsecutive, SearchesNoFartherThanTold) {
 
 TEST(FeatureFilter, PaperDropsWhatMovesInABoxAndNothingThatStands) {
   const TwoFrames two = two_frames();
-  const FeatureFilter filter(without_depth_stability(), two.camera, DynamicsMode::kPaper, 1);
+  const FeatureFilter filter(without_depth_stability(), two.camera, dynamics_mode("paper"), 1);
   const FilteredFeatures filtered = filter.filter(scene_of(two));
   EXPECT_EQ(count(filtered, FeatureVerdict::kDynamic), static_cast<std::size_t>(kBoxFeatures / 2));
   EXPECT_EQ(filtered.dropped.size(), static_cast<std::size_t>(kBoxFeatures / 2));
@@ -131,7 +131,7 @@ TEST(FeatureFilter, WithoutStaticMatchesWhatMovesStays) {
   FeatureFilterConfig config = without_depth_stability();
   config.static_matches.enabled = false;
   const FilteredFeatures filtered =
-      FeatureFilter(config, two.camera, DynamicsMode::kPaper, 1).filter(scene_of(two));
+      FeatureFilter(config, two.camera, dynamics_mode("paper"), 1).filter(scene_of(two));
   EXPECT_EQ(filtered.features.size(), two.current.size());
   EXPECT_TRUE(filtered.dropped.empty());
 }
@@ -140,18 +140,18 @@ TEST(FeatureFilter, WhatHasNoMatchInTheFrameBeforeStays) {
   const TwoFrames two = two_frames();
   FeatureScene scene = scene_of(two);
   scene.previous = nullptr;
-  const FeatureFilter filter(without_depth_stability(), two.camera, DynamicsMode::kPaper, 1);
+  const FeatureFilter filter(without_depth_stability(), two.camera, dynamics_mode("paper"), 1);
   EXPECT_EQ(filter.filter(scene).features.size(), two.current.size());
 }
 
 TEST(FeatureFilter, FullJudgesBoxesOnlyWhenTold) {
   const TwoFrames two = two_frames();
   FeatureFilterConfig config = without_depth_stability();
-  EXPECT_TRUE(FeatureFilter(config, two.camera, DynamicsMode::kFull, 1)
+  EXPECT_TRUE(FeatureFilter(config, two.camera, dynamics_mode("full"), 1)
                   .filter(scene_of(two))
                   .dropped.empty());
   config.static_matches.in_full = true;
-  EXPECT_EQ(FeatureFilter(config, two.camera, DynamicsMode::kFull, 1)
+  EXPECT_EQ(FeatureFilter(config, two.camera, dynamics_mode("full"), 1)
                 .filter(scene_of(two))
                 .dropped.size(),
             static_cast<std::size_t>(kBoxFeatures / 2));
@@ -173,7 +173,7 @@ struct DepthFaults {
     two.depth.mat(pixel(hole) + cv::Point(0, 1)) = 0.0F;
   }
 
-  [[nodiscard]] FilteredFeatures filtered(DynamicsMode mode) const {
+  [[nodiscard]] FilteredFeatures filtered(const DynamicsMode& mode) const {
     return FeatureFilter({}, two.camera, mode, 1).filter(scene_of(two));
   }
   [[nodiscard]] std::size_t index_of(const FilteredFeatures& filtered, std::size_t i) const {
@@ -184,7 +184,7 @@ struct DepthFaults {
 
 TEST(FeatureFilter, PaperDropsFeaturesOfUnstableAndOfMissingDepth) {
   const DepthFaults faults;
-  const FilteredFeatures filtered = faults.filtered(DynamicsMode::kPaper);
+  const FilteredFeatures filtered = faults.filtered(dynamics_mode("paper"));
   EXPECT_EQ(faults.index_of(filtered, faults.jump), filtered.features.size());
   EXPECT_EQ(faults.index_of(filtered, faults.hole), filtered.features.size());
   EXPECT_EQ(count(filtered, FeatureVerdict::kMissingDepth), 1U);
@@ -193,7 +193,7 @@ TEST(FeatureFilter, PaperDropsFeaturesOfUnstableAndOfMissingDepth) {
 
 TEST(FeatureFilter, FullKeepsThemAndTrustsNoUnstableDepth) {
   const DepthFaults faults;
-  const FilteredFeatures filtered = faults.filtered(DynamicsMode::kFull);
+  const FilteredFeatures filtered = faults.filtered(dynamics_mode("full"));
   ASSERT_EQ(filtered.features.size(), faults.two.current.size());
   EXPECT_EQ(filtered.features.depth_m[faults.jump], 0.0F);
   EXPECT_EQ(filtered.features.sensor_depth_m[faults.jump], 0.0F);
@@ -202,14 +202,14 @@ TEST(FeatureFilter, FullKeepsThemAndTrustsNoUnstableDepth) {
 
 TEST(FeatureFilter, MaskJudgesNothing) {
   const DepthFaults faults;
-  const FilteredFeatures filtered = faults.filtered(DynamicsMode::kMask);
+  const FilteredFeatures filtered = faults.filtered(dynamics_mode("mask"));
   EXPECT_EQ(count(filtered, FeatureVerdict::kStable), faults.two.current.size());
   EXPECT_EQ(filtered.features.depth_m, faults.two.current.depth_m);
 }
 
 TEST(FeatureFilter, TheSameSeedGivesTheSameBits) {
   const TwoFrames two = two_frames();
-  const FeatureFilter filter({}, two.camera, DynamicsMode::kPaper, 7);
+  const FeatureFilter filter({}, two.camera, dynamics_mode("paper"), 7);
   const FilteredFeatures a = filter.filter(scene_of(two)), b = filter.filter(scene_of(two));
   EXPECT_EQ(a.verdicts, b.verdicts);
   EXPECT_EQ(a.features.raw_px, b.features.raw_px);

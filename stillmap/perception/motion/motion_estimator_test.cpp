@@ -65,7 +65,7 @@ Snapshot look(int frame,
   return shot;
 }
 
-ObjectMotion feed(MotionEstimator& states, const Snapshot& shot) {
+Motion feed(MotionEstimator& states, const Snapshot& shot) {
   return states.update(shot.objects, shot.depth, shot.states, shot.T_world_camera).at(0);
 }
 
@@ -93,8 +93,8 @@ TEST(RobustVelocity, OfAStraightWayWithAnOutlier) {
 TEST(MotionEstimator, AStillObjectStaysStillWhateverTheCameraDoes) {
   MotionEstimator states({}, builtin_camera("tum_fr3"));
   for (int i = 0; i < 60; ++i) {
-    const ObjectMotion motion = feed(states, look(i, {0.1, 0.0, 2.5}, camera_at(i)));
-    EXPECT_EQ(motion.motion, i < 4 ? Motion::kUnknown : Motion::kStill) << i;
+    const Motion motion = feed(states, look(i, {0.1, 0.0, 2.5}, camera_at(i)));
+    EXPECT_EQ(motion.state, i < 4 ? MotionState::kUnknown : MotionState::kStill) << i;
     ASSERT_TRUE(motion.p_world);
     EXPECT_LT((*motion.p_world - Eigen::Vector3d(0.1, 0.0, 2.5)).norm(), 0.01);
   }
@@ -103,13 +103,13 @@ TEST(MotionEstimator, AStillObjectStaysStillWhateverTheCameraDoes) {
 
 TEST(MotionEstimator, AMovingObjectHasItsVelocityInTheWorld) {
   MotionEstimator states({}, builtin_camera("tum_fr3"));
-  ObjectMotion motion;
+  Motion motion;
   const Eigen::Vector3d velocity(0.4, 0.0, 0.3);
   for (int i = 0; i < 20; ++i) {
     motion =
         feed(states, look(i, Eigen::Vector3d(-0.2, 0, 2.0) + velocity * i / 30.0, camera_at(i)));
   }
-  EXPECT_EQ(motion.motion, Motion::kMoving);
+  EXPECT_EQ(motion.state, MotionState::kMoving);
   EXPECT_LT((motion.velocity_m_s - velocity).norm(), 0.05);
   EXPECT_EQ(states.moving(), std::vector<TrackId>{TrackId(1)});
 }
@@ -117,29 +117,29 @@ TEST(MotionEstimator, AMovingObjectHasItsVelocityInTheWorld) {
 TEST(MotionEstimator, PushedThenRollingThenStill) {
   MotionEstimator states({}, builtin_camera("tum_fr3"));
   Eigen::Vector3d place(-0.3, 0, 2.5);
-  std::array<Motion, 60> seen{};
+  std::array<MotionState, 60> seen{};
   for (int i = 0; i < 60; ++i) {
     if (i >= 10 && i < 35) place.x() += 0.6 / 30.0;
     const bool touched = i < 25;
     const StateReason reason = touched ? StateReason::kTouching : StateReason::kBoxesApart;
-    const ObjectMotion motion = feed(states, look(i, place, camera_at(i), reason));
-    seen[static_cast<std::size_t>(i)] = motion.motion;
-    EXPECT_EQ(motion.by.has_value(), motion.motion == Motion::kMovedBySomeone);
+    const Motion motion = feed(states, look(i, place, camera_at(i), reason));
+    seen[static_cast<std::size_t>(i)] = motion.state;
+    EXPECT_EQ(motion.by.has_value(), motion.state == MotionState::kMovedBySomeone);
   }
-  EXPECT_EQ(seen[9], Motion::kStill);
-  EXPECT_EQ(seen[22], Motion::kMovedBySomeone);
-  EXPECT_EQ(seen[30], Motion::kMoving);  // the hand has left
-  EXPECT_EQ(seen[37], Motion::kMoving);  // it takes some frames to be sure
-  EXPECT_EQ(seen[55], Motion::kStill);
+  EXPECT_EQ(seen[9], MotionState::kStill);
+  EXPECT_EQ(seen[22], MotionState::kMovedBySomeone);
+  EXPECT_EQ(seen[30], MotionState::kMoving);  // the hand has left
+  EXPECT_EQ(seen[37], MotionState::kMoving);  // it takes some frames to be sure
+  EXPECT_EQ(seen[55], MotionState::kStill);
 }
 
 TEST(MotionEstimator, AFlickeringMaskIsNoMotion) {
   MotionEstimator states({}, builtin_camera("tum_fr3"));
   for (int i = 0; i < 60; ++i) {
     const int jitter = (i * 7919) % 13 - 6;
-    const ObjectMotion motion =
+    const Motion motion =
         feed(states, look(i, {0.1, 0, 2.5}, camera_at(i), StateReason::kBoxesApart, jitter));
-    EXPECT_NE(motion.motion, Motion::kMoving) << i;
+    EXPECT_NE(motion.state, MotionState::kMoving) << i;
   }
 }
 
@@ -149,14 +149,14 @@ TEST(MotionEstimator, FarAwayItTakesMoreToCountAsMoving) {
   const Eigen::Vector3d velocity(0.4, 0, 0);
   for (const double distance : {1.0, 5.0}) {
     MotionEstimator states(config, builtin_camera("tum_fr3"));
-    ObjectMotion motion;
+    Motion motion;
     for (int i = 0; i < 15; ++i) {
       motion = feed(states,
                     look(i,
                          Eigen::Vector3d(-0.1, 0, distance) + velocity * i / 30.0,
                          Eigen::Isometry3d::Identity()));
     }
-    EXPECT_EQ(motion.motion, distance < 2 ? Motion::kMoving : Motion::kStill);
+    EXPECT_EQ(motion.state, distance < 2 ? MotionState::kMoving : MotionState::kStill);
   }
 }
 
@@ -165,14 +165,14 @@ TEST(MotionEstimator, WithoutDepthOrWhenFilledInNothingIsKnown) {
   for (int i = 0; i < 10; ++i) {
     Snapshot shot = look(i, {0.1 * i, 0, 2.0}, camera_at(i));
     shot.states[0].depths.reset();
-    const ObjectMotion motion = feed(states, shot);
-    EXPECT_EQ(motion.motion, Motion::kUnknown);
+    const Motion motion = feed(states, shot);
+    EXPECT_EQ(motion.state, MotionState::kUnknown);
     EXPECT_FALSE(motion.p_world);
   }
   for (int i = 10; i < 20; ++i) {
     Snapshot shot = look(i, {0.1 * i - 1, 0, 2.0}, camera_at(i));
     shot.objects.objects[0].filled = BoxOrigin{FrameId(1), std::nullopt};
-    EXPECT_EQ(feed(states, shot).motion, Motion::kUnknown);
+    EXPECT_EQ(feed(states, shot).state, MotionState::kUnknown);
   }
 }
 
@@ -196,7 +196,7 @@ struct MotionScore {
 MotionScore score_motion(const TruthSequence& data) {
   const TumSequence& sequence = data.sequence();
   const Trajectory poses = read_trajectory(*sequence.groundtruth_file());
-  const DynamicObjects dynamics({}, sequence.camera(), DynamicsMode::kMask);
+  const DynamicObjects dynamics({}, sequence.camera(), dynamics_mode("mask"));
   MotionEstimator states({}, sequence.camera());
   ObjectTracker tracker({}, FillRule::kCausal);
   MotionScore score;
@@ -205,14 +205,14 @@ MotionScore score_motion(const TruthSequence& data) {
     const std::optional<FrameObjects> objects =
         tracker.push({frame->id, data.detections(i), frame->depth});
     const DynamicsResult judged = dynamics.judge(frame->depth, *objects, {});
-    const std::vector<ObjectMotion> motions =
+    const std::vector<Motion> motions =
         states.update(*objects, frame->depth, judged.states, pose_at(poses, frame->stamp.seconds));
     const TruthSequence::Frame truth = data.truth(i);
     for (std::size_t k = 0; k < motions.size(); ++k) {
-      if (objects->objects[k].filled || motions[k].motion == Motion::kUnknown) continue;
+      if (objects->objects[k].filled || motions[k].state == MotionState::kUnknown) continue;
       const int id = true_id(*objects, static_cast<int>(k) + 1, truth.ids);
       const double speed = id == 0 ? 0.0 : truth.speeds.at(id);
-      const int moving = motions[k].motion == Motion::kMoving ? 1 : 0;
+      const int moving = motions[k].state == MotionState::kMoving ? 1 : 0;
       if (id > 0 && id < 10 && speed > 0.4) {
         ++score.fast_known;
         score.fast_moving += moving;

@@ -25,7 +25,7 @@ Features extract(const GrayImage& image, const OrbConfig& config = {}) {
 
 Features extract(const GrayImage& image, const cv::Mat1b& excluded) {
   const OrbExtractor extractor({}, camera_of_size(image.mat.cols, image.mat.rows));
-  return extractor.extract(image, no_depth(image), excluded);
+  return extractor.extract(image, no_depth(image), Mask(excluded));
 }
 
 TEST(PyramidScales, ArePowersOfTheFactor) {
@@ -79,7 +79,7 @@ TEST(OrbExtractor, CornersFoundAheadOfOtherImagesGiveTheSameBits) {
     cv::Mat1b excluded(240, 320, std::uint8_t{0});
     excluded.colRange(50 * static_cast<int>(seed), 200).setTo(1);
     const Features a = extract(image, excluded);
-    const Features b = extractor.extract(std::move(ahead[seed - 1]), no_depth(image), excluded);
+    const Features b = extractor.extract(std::move(ahead[seed - 1]), no_depth(image), Mask(excluded));
     EXPECT_GT(a.size(), 100U);
     EXPECT_EQ(a.raw_px, b.raw_px);
     EXPECT_EQ(a.descriptors, b.descriptors);

@@ -14,9 +14,14 @@ LoopStage::LoopStage(const LoopConfig& config,
       camera_(camera),
       measure_(measure),
       detector_(config, camera, measure, seed),
-      worker_(options.threaded ? std::make_unique<Worker>() : nullptr),
-      adjustments_(worker_.get(),
+      adjustments_(options.worker,
                    [probe = options.probe] { begin_work(probe, Stage::kAdjustment); }) {}
+
+LoopStage LoopStage::inline_copy() const {
+  LoopStage copy = *this;
+  copy.adjustments_ = adjustments_.inline_copy();
+  return copy;
+}
 
 bool LoopStage::close(Map& map,
                       std::vector<LoopEdge>& loops,

@@ -27,6 +27,9 @@ class LoopStage {
             std::uint32_t seed,
             const StageOptions& options);
 
+  /// A stage with the same pending adjustments, whose own work runs inline.
+  [[nodiscard]] LoopStage inline_copy() const;
+
   [[nodiscard]] const PlaceIndex& places() const { return places_; }
   void add_keyframe(const Keyframe& keyframe) {
     places_.add(keyframe.id, keyframe.features->descriptors);
@@ -57,7 +60,6 @@ class LoopStage {
   LoopDetector detector_;
   PlaceIndex places_;
   int closed_ = 0;
-  std::unique_ptr<Worker> worker_;
   JobLedger<NumberedCorrection> adjustments_;
 };
 
