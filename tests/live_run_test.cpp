@@ -19,7 +19,8 @@ SequenceRun run_live_wall(const Segmenter* segmenter, double frame_s) {
   options.live.emplace();
   options.live->clock = &clock;
   options.on_progress = [&](std::size_t, std::size_t) { clock.pass_s(frame_s); };
-  return run_sequence(wall_sequence(), {}, std::move(options));
+  TumFolder wall(wall_sequence());
+  return run_sequence(wall, {}, std::move(options));
 }
 
 SequenceRun run_again(const Segmenter* segmenter, const LiveRecord& record, int threads) {
@@ -28,7 +29,8 @@ SequenceRun run_again(const Segmenter* segmenter, const LiveRecord& record, int 
   options.threads = threads;
   options.live.emplace();
   options.live->record = record;
-  return run_sequence(wall_sequence(), {}, std::move(options));
+  TumFolder wall(wall_sequence());
+  return run_sequence(wall, {}, std::move(options));
 }
 
 TEST(LiveRun, CanBeMadeAgainToTheBit) {

@@ -51,9 +51,9 @@ FramePtr bare_frame(std::uint32_t i) {
 
 std::vector<std::uint32_t> ids_of(const ObjectFeedStep& step) {
   std::vector<std::uint32_t> ids;
-  for (const SegmentedFrame& seen : step.arrived) {
-    ids.push_back(seen.frame->id.value);
-    EXPECT_EQ(seen.detections.objects.at(0).score, static_cast<float>(seen.frame->stamp.seconds));
+  for (const auto& [frame, detections] : step.arrived) {
+    ids.push_back(frame->id.value);
+    EXPECT_EQ(detections.objects.at(0).score, static_cast<float>(frame->stamp.seconds));
   }
   return ids;
 }
@@ -102,7 +102,7 @@ TEST(NetworkFeed, WaitsForTheOwnOfAFrameThatNeedsThem) {
   EXPECT_TRUE(feed.step(bare_frame(3), false).looking);
   const ObjectFeedStep step = feed.step(bare_frame(4), true);
   EXPECT_FALSE(step.looking);
-  EXPECT_EQ(step.arrived.back().frame->id, FrameId(4));
+  EXPECT_EQ(step.arrived.back().first->id, FrameId(4));
   EXPECT_EQ(ids_of(step).size(), 2U);  // and those of the look that was under way, first
 }
 

@@ -25,7 +25,8 @@ SequenceRun run_wall(const Segmenter& segmenter, int threads, StageProbe probe) 
   options.segmenter = &segmenter;
   options.threads = threads;
   options.probe = std::move(probe);
-  return run_sequence(wall_sequence(), config, std::move(options));
+  TumFolder wall(wall_sequence());
+  return run_sequence(wall, config, std::move(options));
 }
 
 // Some pieces of work of a stage take much longer than others.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "stillmap/io/trajectory_io.hpp"
+#include "stillmap/sensor/tum_folder.hpp"
 #include "tests/support/image_files.hpp"
 #include "tooling/eval/ate.hpp"
 #include "tooling/pipeline/run_sequence.hpp"
@@ -25,10 +26,10 @@ class Freiburg1Xyz : public testing::Test {
   }
 
   [[nodiscard]] Accuracy measure(const SystemConfig& config, std::size_t stride) const {
-    const TumSequence sequence = TumSequence::open(folder_, {.camera = builtin_camera("tum_fr1")});
+    TumFolder frames(TumSequence::open(folder_, {.camera = builtin_camera("tum_fr1")}));
     RunOptions options;
     options.frames.stride = stride;
-    const SequenceRun run = run_sequence(sequence, config, options);
+    const SequenceRun run = run_sequence(frames, config, options);
     const auto ate = absolute_trajectory_error(read_trajectory(folder_ / "groundtruth.txt"),
                                                run.result.trajectory);
     return {ate->translation_m.rmse,

@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 
 #include "apps/commands.hpp"
+#include "apps/option_value.hpp"
 #include "apps/progress_bar.hpp"
 #include "apps/steady_clock.hpp"
 #include "stillmap/config/config_io.hpp"
@@ -16,6 +17,7 @@
 #include "stillmap/io/atomic_file.hpp"
 #include "stillmap/io/trajectory_io.hpp"
 #include "stillmap/sensor/camera_io.hpp"
+#include "stillmap/sensor/tum_folder.hpp"
 #include "stillmap/session/session_io.hpp"
 #include "tooling/eval/ate.hpp"
 #include "tooling/eval/rpe.hpp"
@@ -183,12 +185,20 @@ void save_session(Session& session, const RunArguments& arguments, const std::st
   write_session(std::filesystem::path(arguments.out) / "map.stillmap", session);
 }
 
-std::optional<LiveOptions> live_options(const RunArguments& arguments,
-                                        const TumSequence& sequence) {
+FrameSelection selected_frames(const RunArguments& arguments) {
+  FrameSelection selection;
+  if (!arguments.frames.empty()) {
+    selection = option_value("--frames", arguments.frames, parse_frames);
+  }
+  selection.stride = arguments.stride;
+  return selection;
+}
+
+std::optional<LiveOptions> live_options(const RunArguments& arguments) {
   if (!arguments.live) return std::nullopt;
   LiveOptions live;
   live.speed = arguments.speed;
-  if (!arguments.replay.empty()) live.record = read_live_record(arguments.replay, sequence);
+  if (!arguments.replay.empty()) live.record = read_live_record(arguments.replay);
   return live;
 }
 
@@ -205,8 +215,9 @@ int run(const RunArguments& arguments) {
     throw Error("--poses truth: {} has no groundtruth.txt; name one with --groundtruth",
                 sequence.folder().string());
   }
-  const std::optional<SequenceTruth> truth = read_sequence_truth(sequence);
-  const CameraModel& camera = sequence.camera();
+  const std::optional<SequenceTruth> truth = read_sequence_truth(arguments.sequence);
+  TumFolder frames(sequence, selected_frames(arguments));
+  const CameraModel& camera = frames.camera();
   const std::unique_ptr<Segmenter> segmenter =
       arguments.segmenter == "none" ? nullptr
                                     : make_segmenter(arguments.segmenter,
@@ -217,28 +228,27 @@ int run(const RunArguments& arguments) {
   options.localize_only = arguments.localize_only;
   prepare_run_folder(arguments.out);
   options.segmenter = segmenter.get();
-  if (!arguments.frames.empty()) options.frames = parse_frames(arguments.frames);
-  options.frames.stride = arguments.stride;
   options.threads = arguments.threads;
-  options.live = live_options(arguments, sequence);
+  options.live = live_options(arguments);
   SteadyClock clock;
   if (options.live) options.live->clock = &clock;
   if (truth || arguments.poses == "truth") options.groundtruth = groundtruth;
   ProgressBar progress("frames");
   options.on_progress = [&](std::size_t done, std::size_t total) { progress.show(done, total); };
   options.on_warning = [&](const std::string& warning) { progress.warn(warning); };
-  SequenceRun run = run_sequence(sequence, config, std::move(options));
+  SequenceRun run = run_sequence(frames, config, std::move(options));
   progress.finish();
 
   RunReport& report = run.report;
   report.version = kVersion;
+  report.sequence = sequence.name();
   report.config_yaml = dump_yaml(list_fields(config));
   report.groundtruth = std::move(groundtruth);
   evaluate(report);
   choose_map(run, arguments);
   if (truth) evaluate_maps(run, *truth);
   const std::optional<std::string> live_lines =
-      arguments.live ? std::optional(live_jsonl(run.live_record, sequence)) : std::nullopt;
+      arguments.live ? std::optional(live_jsonl(run.live_record)) : std::nullopt;
   write_run_folder(arguments.out, run.result, report, {run.objects_jsonl, live_lines});
   save_session(run.session, arguments, report.config_yaml);
   print_output(summary(arguments, report));

@@ -3,11 +3,10 @@
 
 #include <chrono>
 #include <thread>
-#include <vector>
 
 #include "stillmap/core/error.hpp"
 #include "stillmap/sensor/clock.hpp"
-#include "stillmap/sensor/tum_sequence.hpp"
+#include "stillmap/sensor/tum_folder.hpp"
 #include "tests/support/image_files.hpp"
 #include "tests/support/plane_sequence.hpp"
 #include "tooling/pipeline/run_sequence.hpp"
@@ -36,12 +35,6 @@ inline const TumSequence& wall_sequence() {
     return TumSequence::open(kFolder.path());
   }();
   return kSequence;
-}
-
-inline std::vector<FrameId> wall_frames() {
-  std::vector<FrameId> frames;
-  for (std::uint32_t i = 0; i < kWallFrames; ++i) frames.emplace_back(i);
-  return frames;
 }
 
 /// Calls a part of the wall a person, after some time; fails from a stamp on, if told so.

@@ -1,47 +1,56 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <deque>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "stillmap/concurrency/prefetcher.hpp"
-#include "stillmap/sensor/frame_source.hpp"
+#include "stillmap/concurrency/stage_probe.hpp"
+#include "stillmap/sensor/frame_stream.hpp"
 #include "stillmap/system/system.hpp"
 #include "tooling/pipeline/object_source.hpp"
 
 namespace stillmap {
 
-/// What became of the next frame of a sequence, and the frames that are ready for the system now:
-/// others than that, while objects wait for later frames.
-struct PreparedFrames {
-  SourcedFrame source;                    ///< without its frame; at the end, empty
-  std::optional<double> segmentation_ms;  ///< where objects were looked for
-  std::vector<PreparedFrame> ready;
-  bool at_end = false;  ///< nothing was read: these are the last
-};
-
 /// Reads frames, finds their objects and prepares them for the system; with threads, reading runs
 /// ahead on one, the rest on another. The results do not depend on that.
 class FramePreparation {
  public:
-  /// The system outlives this.
-  FramePreparation(FrameSource source, ObjectSource objects, const System& system, bool ahead);
+  /// The work on one frame of the stream, and the earlier frames that it has made ready: objects
+  /// wait for later frames, so that these are others.
+  struct Step {
+    std::optional<DamagedFrame> damaged;  ///< the frame read, where it is damaged
+    std::vector<StageTime> times;         ///< of reading and of the network, where they worked
+    std::vector<PreparedFrame> ready;     ///< for System::process, in order
+  };
 
-  /// The next frame's; once more at the end of the sequence, then nothing. Throws what reading and
-  /// segmentation throw.
-  [[nodiscard]] std::optional<PreparedFrames> next() { return prepared_.next(); }
+  /// `stream` and `system` outlive this.
+  FramePreparation(FrameStream& stream,
+                   ObjectSource objects,
+                   const System& system,
+                   const StageOptions& options);
+
+  /// One step for each frame and one for the end of the stream, then nothing. Throws what reading
+  /// and segmentation throw.
+  [[nodiscard]] std::optional<Step> next() { return prepared_.next(); }
 
  private:
-  [[nodiscard]] std::optional<PreparedFrames> prepare();
-  [[nodiscard]] std::vector<PreparedFrame> prepare(std::vector<FrameWithObjects> frames) const;
+  using TimedFrame = std::pair<StreamedFrame, double>;  // with the milliseconds of its reading
+  [[nodiscard]] std::optional<TimedFrame> read();
+  [[nodiscard]] std::optional<Step> prepare();
+  [[nodiscard]] std::vector<PreparedFrame> prepare(std::vector<FrameObjects> objects);
 
   static constexpr std::size_t kAhead = 4;
-  FrameSource source_;
+  FrameStream& stream_;
   ObjectSource objects_;
   const System& system_;
+  StageProbe probe_;
+  std::deque<FramePtr> waiting_;  // for their objects
   bool ended_ = false;
-  Prefetcher<SourcedFrame> read_;
-  Prefetcher<PreparedFrames> prepared_;  // last: its thread uses all else
+  Prefetcher<TimedFrame> read_;
+  Prefetcher<Step> prepared_;  // last: its thread uses all else
 };
 
 }  // namespace stillmap

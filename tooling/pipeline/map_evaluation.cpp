@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tooling/pipeline/map_evaluation.hpp"
 
+#include "stillmap/io/atomic_file.hpp"
 #include "stillmap/io/trajectory_io.hpp"
 #include "tooling/eval/map_alignment.hpp"
 #include "tooling/eval/map_files.hpp"
 
 namespace stillmap {
 
-std::optional<SequenceTruth> read_sequence_truth(const TumSequence& sequence) {
-  const std::filesystem::path static_file = sequence.folder() / "truth" / "static_map.ply";
-  const std::filesystem::path dynamic_file = sequence.folder() / "truth" / "dynamic_map.ply";
-  const std::optional<std::filesystem::path> groundtruth = sequence.groundtruth_file();
-  if (!groundtruth || !std::filesystem::exists(static_file)) return std::nullopt;
+std::optional<SequenceTruth> read_sequence_truth(const std::filesystem::path& folder) {
+  const std::filesystem::path static_file = folder / "truth" / "static_map.ply";
+  const std::filesystem::path dynamic_file = folder / "truth" / "dynamic_map.ply";
+  const std::filesystem::path groundtruth = folder / "groundtruth.txt";
+  if (!path_exists(groundtruth) || !std::filesystem::exists(static_file)) return std::nullopt;
   const bool with_dynamic = std::filesystem::exists(dynamic_file);
-  return SequenceTruth{.groundtruth = read_trajectory(*groundtruth),
+  return SequenceTruth{.groundtruth = read_trajectory(groundtruth),
                        .map = read_map_truth(
                            static_file, with_dynamic ? std::optional(dynamic_file) : std::nullopt)};
 }

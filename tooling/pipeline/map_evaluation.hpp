@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <optional>
 
 #include "stillmap/core/point_cloud.hpp"
 #include "stillmap/core/trajectory.hpp"
-#include "stillmap/sensor/tum_sequence.hpp"
 #include "tooling/eval/map_quality.hpp"
 
 namespace stillmap {
@@ -16,10 +16,10 @@ struct SequenceTruth {
   MapTruth map;
 };
 
-/// From groundtruth.txt, truth/static_map.ply and, where it is, truth/dynamic_map.ply; nothing when
-/// one of the first two is not there. Throws Error for a file that is broken or absurd, and for a
-/// static map without points.
-[[nodiscard]] std::optional<SequenceTruth> read_sequence_truth(const TumSequence& sequence);
+/// From groundtruth.txt, truth/static_map.ply in the sequence's folder and, where it is,
+/// truth/dynamic_map.ply; nothing when one of the first two is not there. Throws Error for a file
+/// that is broken or absurd, and for a static map without points.
+[[nodiscard]] std::optional<SequenceTruth> read_sequence_truth(const std::filesystem::path& folder);
 
 /// How good the map of a run is; `estimate` is the run's trajectory and says where the map lies.
 /// Nothing when too few of its stamps are known to the ground truth. Throws Error for a map with

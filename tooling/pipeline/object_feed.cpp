@@ -17,7 +17,7 @@ void NetworkFeed::look_at(const FramePtr& frame) {
   worker_.post([task] { (*task)(); });
 }
 
-SegmentedFrame NetworkFeed::finish_look() {
+std::pair<FramePtr, FrameDetections> NetworkFeed::finish_look() {
   Look look = std::move(*look_);
   look_.reset();  // first, for get() may throw
   return {std::move(look.frame), look.detections.get()};
@@ -57,10 +57,10 @@ ObjectFeedStep RecordedFeed::step(const FramePtr& frame, bool needs_own) {
   if (step.looking) held_[frame->id] = frame;
   for (const FrameId id : recorded.objects_of) {
     const FramePtr looked_at = held_.extract(id).mapped();
-    step.arrived.push_back({looked_at, segmenter_.segment(looked_at->color, looked_at->stamp)});
+    step.arrived.emplace_back(looked_at, segmenter_.segment(looked_at->color, looked_at->stamp));
     if (id == frame->id) step.looking = false;
   }
-  const bool has_own = !step.arrived.empty() && step.arrived.back().frame->id == frame->id;
+  const bool has_own = !step.arrived.empty() && step.arrived.back().first->id == frame->id;
   if (needs_own && !has_own) {
     throw Error(
         "the record has no objects of frame {}, which a map may begin with: it is of a run with "

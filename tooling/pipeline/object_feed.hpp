@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "stillmap/concurrency/worker.hpp"
@@ -14,15 +15,11 @@
 
 namespace stillmap {
 
-/// What a network has found in a frame.
-struct SegmentedFrame {
-  FramePtr frame;
-  FrameDetections detections;
-};
-
+/// What an ObjectFeed does at a frame.
 struct ObjectFeedStep {
-  std::vector<SegmentedFrame> arrived;  ///< since the last step, in order
-  bool looking = false;                 ///< at the step's frame, from now on
+  /// Frames whose objects have arrived since the last step, in order.
+  std::vector<std::pair<FramePtr, FrameDetections>> arrived;
+  bool looking = false;  ///< the network begins to work on the step's frame
 };
 
 /// The objects of some frames, which come in while later frames are processed.
@@ -54,7 +51,7 @@ class NetworkFeed : public ObjectFeed {
     std::future<FrameDetections> detections;
   };
   void look_at(const FramePtr& frame);
-  [[nodiscard]] SegmentedFrame finish_look();
+  [[nodiscard]] std::pair<FramePtr, FrameDetections> finish_look();
 
   const Segmenter& segmenter_;
   int gap_frames_;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <deque>
-#include <memory>
 #include <vector>
 
 #include "stillmap/core/rgbd_frame.hpp"
@@ -11,34 +9,27 @@
 
 namespace stillmap {
 
-/// A frame with the objects that a network has found in it, or has missed and others remember.
-struct FrameWithObjects {
-  FramePtr frame;
-  FrameObjects objects;
-};
-
-/// Finds the objects of frames and follows them. A frame comes out some frames after it went in,
-/// because later frames say what it misses.
+/// Finds the objects of frames and follows them. The objects of a frame come out some frames after
+/// it went in, because later frames tell which objects the network has missed in it.
 class ObjectSource {
  public:
-  /// `segmenter` may be null: then frames come out at once, without objects. It outlives this.
+  /// `segmenter` may be null: then every frame comes out at once and has no objects. It outlives
+  /// this.
   ObjectSource(const Segmenter* segmenter, const ObjectTrackerConfig& config);
 
-  /// Whether there is something that finds objects.
-  [[nodiscard]] bool looks() const { return segmenter_ != nullptr; }
+  /// Whether there is a network that finds objects.
+  [[nodiscard]] bool has_network() const { return segmenter_ != nullptr; }
 
-  /// Takes the next frame; gives those that are ready, in order.
-  [[nodiscard]] std::vector<FrameWithObjects> push(FramePtr frame);
+  /// Takes the next frame; gives the objects of those frames that are ready, in order, each frame
+  /// once.
+  [[nodiscard]] std::vector<FrameObjects> push(const RgbdFrame& frame);
 
-  /// The end: the frames that have not come out.
-  [[nodiscard]] std::vector<FrameWithObjects> flush();
+  /// The end: the objects of the frames that have not come out.
+  [[nodiscard]] std::vector<FrameObjects> flush();
 
  private:
-  [[nodiscard]] FrameWithObjects pair_up(FrameObjects objects);
-
   const Segmenter* segmenter_;
   ObjectTracker tracker_;
-  std::deque<FramePtr> waiting_;
 };
 
 }  // namespace stillmap

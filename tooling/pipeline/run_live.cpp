@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tooling/pipeline/run_live.hpp"
 
-#include <algorithm>
 #include <memory>
 #include <optional>
+#include <tuple>
 #include <utility>
+#include <variant>
 
+#include "stillmap/concurrency/prefetcher.hpp"
 #include "stillmap/core/error.hpp"
-#include "stillmap/sensor/live_camera.hpp"
+#include "stillmap/sensor/clocked_stream.hpp"
 #include "tooling/pipeline/object_feed.hpp"
+#include "tooling/pipeline/replayed_stream.hpp"
 
 namespace stillmap {
 namespace {
@@ -46,11 +49,11 @@ class LiveLoop {
 };
 
 ObjectFeedStep LiveLoop::look(const FramePtr& frame) {
-  LiveStep recorded{frame->id, {}};
+  LiveStep recorded{frame->id, {}, frame->stamp.text};
   ObjectFeedStep step;
   if (feed_) step = feed_->step(frame, system_.needs_own_objects());
-  for (const SegmentedFrame& seen : step.arrived) recorded.objects_of.push_back(seen.frame->id);
-  if (!step.arrived.empty()) last_seen_ = step.arrived.back().frame->id;
+  for (const auto& arrived : step.arrived) recorded.objects_of.push_back(arrived.first->id);
+  if (!step.arrived.empty()) last_seen_ = step.arrived.back().first->id;
   result_.report.looked_at += step.arrived.size();
   if (last_seen_) {
     result_.report.objects_age_frames.push_back(
@@ -66,11 +69,11 @@ double LiveLoop::process(const FramePtr& frame) {
   MaskOrigin origin = step.looking ? MaskOrigin::kAwaited : MaskOrigin::kCarried;
   std::optional<FrameObjects> own;
   std::vector<FrameObjects> of_earlier;
-  for (SegmentedFrame& seen : step.arrived) {
+  for (auto& [seen, detections] : step.arrived) {
     std::optional<FrameObjects> objects =
-        tracker_.push({seen.frame->id, std::move(seen.detections), seen.frame->depth});
+        tracker_.push({seen->id, std::move(detections), seen->depth});
     STILLMAP_CHECK(objects.has_value());
-    if (seen.frame->id == frame->id) {
+    if (seen->id == frame->id) {
       own = std::move(objects);
     } else {
       of_earlier.push_back(*std::move(objects));
@@ -90,34 +93,41 @@ double LiveLoop::process(const FramePtr& frame) {
   return prepared_ms + result.pose_ms;
 }
 
-void run_by_clock(
-    const LiveInput& input, Clock& clock, LiveLoop& loop, RunLog& log, LiveReport& report) {
-  LiveCamera camera(FrameSource(input.sequence, input.frames, input.options.probe),
-                    input.sequence,
-                    input.options.live->speed,
-                    clock);
-  while (std::optional<CapturedFrame> captured = camera.next()) {
+void run_by_clock(const LiveInput& input, LiveLoop& loop, RunLog& log, LiveReport& report) {
+  const LiveOptions& live = *input.options.live;
+  STILLMAP_CHECK(live.clock != nullptr);
+  report.speed = live.speed;
+  ClockedStream camera(input.stream, live.speed, *live.clock, input.options.probe);
+  while (const std::optional<StreamedFrame> next = camera.next()) {
     if (camera.dropped() > report.dropped) log.pass(camera.dropped() - report.dropped);
     report.dropped = camera.dropped();
-    if (captured->source.frame == nullptr) {
-      log.skip(captured->source);
+    if (const DamagedFrame* const damaged = std::get_if<DamagedFrame>(&*next)) {
+      log.skip(*damaged);
       continue;
     }
-    const double waited_ms = 1000 * (clock.now_s() - captured->arrival_s);
-    report.latency_ms.push_back(waited_ms + loop.process(captured->source.frame));
+    const double waited_ms = 1000 * (live.clock->now_s() - camera.arrival_s());
+    report.latency_ms.push_back(waited_ms + loop.process(std::get<FramePtr>(*next)));
   }
 }
 
-void run_recorded(const LiveInput& input, LiveLoop& loop, RunLog& log) {
-  std::vector<FrameId> frames;
-  for (const LiveStep& step : *input.options.live->record) frames.push_back(step.frame);
-  FrameSource source(input.sequence, frames, input.options.probe);
-  Prefetcher<SourcedFrame> read([&] { return source.next(); }, input.options.threads > 1 ? 4 : 0);
-  while (std::optional<SourcedFrame> next = read.next()) {
-    if (next->frame == nullptr)
-      throw Error("{} (it was read when the run was recorded)", next->damage);
-    log.add_stage_time("reading", next->reading_ms);
-    loop.process(next->frame);
+void run_recorded(const LiveInput& input, LiveLoop& loop, RunLog& log, LiveReport& report) {
+  ReplayedStream recorded(input.stream, *input.options.live->record);
+  // A frame, how long reading took and how many were dropped up to it.
+  using Read = std::tuple<FramePtr, double, std::size_t>;
+  const auto read = [&]() -> std::optional<Read> {
+    begin_work(input.options.probe, Stage::kReading);
+    Stopwatch reading;
+    const std::optional<StreamedFrame> frame = recorded.next();
+    if (!frame) return std::nullopt;
+    return Read{std::get<FramePtr>(*frame), reading.lap_ms(), recorded.dropped()};
+  };
+  Prefetcher<Read> reader(read, input.options.threads > 1 ? 4 : 0);
+  while (const std::optional<Read> next = reader.next()) {
+    const auto& [frame, reading_ms, dropped] = *next;
+    if (dropped > report.dropped) log.pass(dropped - report.dropped);
+    report.dropped = dropped;
+    log.add_stage_time("reading", reading_ms);
+    loop.process(frame);
   }
 }
 
@@ -125,15 +135,11 @@ void run_recorded(const LiveInput& input, LiveLoop& loop, RunLog& log) {
 
 LiveResult run_live(const LiveInput& input, System& system, RunLog& log) {
   LiveLoop loop(input, system, log);
-  const LiveOptions& options = *input.options.live;
   LiveReport report;
-  if (options.record) {
-    run_recorded(input, loop, log);
-    report.dropped = input.frames.size() - std::min(input.frames.size(), options.record->size());
+  if (input.options.live->record) {
+    run_recorded(input, loop, log, report);
   } else {
-    STILLMAP_CHECK(options.clock != nullptr);
-    report.speed = options.speed;
-    run_by_clock(input, *options.clock, loop, log, report);
+    run_by_clock(input, loop, log, report);
   }
   LiveResult result = loop.take_result();
   report.looked_at = result.report.looked_at;

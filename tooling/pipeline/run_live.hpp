@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <vector>
-
 #include "stillmap/system/system.hpp"
 #include "tooling/pipeline/live_record.hpp"
 #include "tooling/pipeline/run_log.hpp"
@@ -11,8 +9,7 @@
 namespace stillmap {
 
 struct LiveInput {
-  const TumSequence& sequence;
-  const std::vector<FrameId>& frames;  ///< that the camera gives
+  FrameStream& stream;  ///< every frame that the camera takes
   const SystemConfig& config;
   const RunOptions& options;  ///< with `live`
 };

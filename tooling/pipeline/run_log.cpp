@@ -43,14 +43,10 @@ void add_map_at_true_poses(SequenceRun& run, const System& system, const Traject
 
 }  // namespace
 
-RunLog::RunLog(const TumSequence& sequence,
-               const SystemConfig& config,
-               const RunOptions& options,
-               std::size_t frames)
-    : sequence_(sequence), options_(options) {
+RunLog::RunLog(const FrameStream& stream, const SystemConfig& config, const RunOptions& options)
+    : stream_(stream), options_(options) {
   with_objects_ = options.segmenter != nullptr && dynamics_mode(config.dynamics.mode).judges;
-  run_.report.sequence = sequence.name();
-  run_.report.frames_total = frames;
+  run_.report.frames_total = stream.size().value();
   run_.report.dynamics_mode = config.dynamics.mode;
 }
 
@@ -83,9 +79,9 @@ void RunLog::pass(std::size_t frames) {
   if (options_.on_progress) options_.on_progress(done_, run_.report.frames_total);
 }
 
-void RunLog::skip(const SourcedFrame& damaged) {
+void RunLog::skip(const DamagedFrame& damaged) {
   RunReport& report = run_.report;
-  report.skipped.push_back({sequence_.entry(damaged.id).stamp, damaged.damage});
+  report.skipped.push_back({damaged.stamp, damaged.damage});
   const std::size_t allowed = report.frames_total / kFramesPerDamaged;
   if (report.skipped.size() > allowed) {
     throw Error("{} ({} damaged so far; at most {} of {} frames may be)",
@@ -113,7 +109,7 @@ SequenceRun RunLog::finish(System& system) {
     run_.objects_jsonl = objects_jsonl(objects_, result.trajectory);
     report.objects = summarize_objects(objects_);
   }
-  report.camera = sequence_.camera();
+  report.camera = stream_.camera();
   report.camera.readout_s = system.readout_s();
   report.frames_tracked = result.trajectory.size();
   report.estimate = result.trajectory;

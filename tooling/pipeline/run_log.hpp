@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "stillmap/core/stopwatch.hpp"
-#include "stillmap/sensor/frame_source.hpp"
+#include "stillmap/sensor/frame_stream.hpp"
 #include "stillmap/system/system.hpp"
 #include "tooling/pipeline/object_log.hpp"
 #include "tooling/pipeline/run_sequence.hpp"
@@ -17,17 +17,13 @@ namespace stillmap {
 /// Keeps what a run has to tell, frame by frame, and ends it.
 class RunLog {
  public:
-  /// `frames`: how many are asked for. What is referred to outlives the log; the run's time begins
-  /// now.
-  RunLog(const TumSequence& sequence,
-         const SystemConfig& config,
-         const RunOptions& options,
-         std::size_t frames);
+  /// What is referred to outlives the log; the run's time begins now.
+  RunLog(const FrameStream& stream, const SystemConfig& config, const RunOptions& options);
 
   void add(const RgbdFrame& frame, const FrameResult& result);
   void add_stage_time(std::string_view stage, double ms);
   /// A damaged frame. Throws Error when there are too many.
-  void skip(const SourcedFrame& damaged);
+  void skip(const DamagedFrame& damaged);
   /// So many frames are done with, without more to tell of them.
   void pass(std::size_t frames);
 
@@ -38,7 +34,7 @@ class RunLog {
   void warn(const std::string& warning);
 
   Stopwatch wall_;
-  const TumSequence& sequence_;
+  const FrameStream& stream_;
   const RunOptions& options_;
   bool with_objects_ = false;
   SequenceRun run_;

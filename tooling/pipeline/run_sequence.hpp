@@ -8,22 +8,12 @@
 
 #include "stillmap/perception/segmentation/segmenter.hpp"
 #include "stillmap/sensor/clock.hpp"
-#include "stillmap/sensor/tum_sequence.hpp"
+#include "stillmap/sensor/frame_stream.hpp"
 #include "stillmap/system/system.hpp"
 #include "tooling/pipeline/live_record.hpp"
 #include "tooling/report/run_report.hpp"
 
 namespace stillmap {
-
-/// Which frames of a sequence: [begin, end) in steps of `stride`.
-struct FrameSelection {
-  std::size_t begin = 0;
-  std::optional<std::size_t> end;  ///< nothing: to the last
-  std::size_t stride = 1;
-};
-
-/// Reads "A:B", "A:", ":B", with A < B, counted from 0, B left out. Throws Error for anything else.
-[[nodiscard]] FrameSelection parse_frames(const std::string& text);
 
 /// A run as with a camera: no frame waits for later ones, or for the network.
 struct LiveOptions {
@@ -33,7 +23,6 @@ struct LiveOptions {
 };
 
 struct RunOptions {
-  FrameSelection frames;
   int threads = 2;
   std::optional<LiveOptions> live;       ///< instead of as fast as it goes, with no frame left out
   std::optional<Session> start;          ///< a saved session that the run goes on from
@@ -65,7 +54,7 @@ struct SequenceRun {
 /// warning; more than one frame in fifty, or any in a sequence below fifty frames, is an Error, and
 /// so is an image of the wrong kind or size. The result does not depend on the number of threads;
 /// that of a live run depends on the clock, by what its record says and nothing else.
-[[nodiscard]] SequenceRun run_sequence(const TumSequence& sequence,
+[[nodiscard]] SequenceRun run_sequence(FrameStream& stream,
                                        const SystemConfig& config,
                                        RunOptions options);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "stillmap/sensor/live_camera.hpp"
+#include "stillmap/sensor/clocked_stream.hpp"
 
 #include <vector>
 
@@ -19,21 +19,22 @@ struct Given {
 // What a camera gives to somebody who takes so long for each frame.
 Given take_all(double speed, const std::vector<double>& work_s) {
   TestClock clock;
-  LiveCamera camera(FrameSource(wall_sequence(), wall_frames()), wall_sequence(), speed, clock);
+  TumFolder wall(wall_sequence());
+  ClockedStream camera(wall, speed, clock);
   Given given;
   const double begin_s = clock.now_s();
-  while (const std::optional<CapturedFrame> captured = camera.next()) {
-    EXPECT_NE(captured->source.frame, nullptr);
-    EXPECT_LE(captured->arrival_s, clock.now_s());
+  while (const std::optional<StreamedFrame> frame = camera.next()) {
+    EXPECT_NE(std::get<FramePtr>(*frame), nullptr);
+    EXPECT_LE(camera.arrival_s(), clock.now_s());
     given.at_s.push_back(clock.now_s() - begin_s);
     clock.pass_s(work_s[given.frames.size() % work_s.size()]);
-    given.frames.push_back(captured->source.id.value);
+    given.frames.push_back(id_of(*frame).value);
   }
   given.dropped = camera.dropped();
   return given;
 }
 
-TEST(LiveCamera, GivesEveryFrameAtItsTimeToWhoeverIsFast) {
+TEST(ClockedStream, GivesEveryFrameAtItsTimeToWhoeverIsFast) {
   for (const double speed : {1.0, 4.0}) {
     const Given given = take_all(speed, {0.001 / speed});
     ASSERT_EQ(given.frames.size(), kWallFrames);
@@ -46,7 +47,7 @@ TEST(LiveCamera, GivesEveryFrameAtItsTimeToWhoeverIsFast) {
 }
 
 // Worked out by hand from "the newest waits, those before it are dropped".
-TEST(LiveCamera, DropsWhatCameWhileSomebodyWasBusy) {
+TEST(ClockedStream, DropsWhatCameWhileSomebodyWasBusy) {
   const std::vector<double> work_s = {0.050, 0.005, 0.210, 0.030, 0.034};
   const Given given = take_all(1.0, work_s);
   std::vector<std::uint32_t> expected;
@@ -63,7 +64,7 @@ TEST(LiveCamera, DropsWhatCameWhileSomebodyWasBusy) {
   EXPECT_GT(given.dropped, 5U);
 }
 
-TEST(LiveCamera, OneLateFrameCostsNothingIfTheNextIsFast) {
+TEST(ClockedStream, OneLateFrameCostsNothingIfTheNextIsFast) {
   std::vector<double> work_s(kWallFrames, 0.010);
   work_s[7] = 0.060;
   EXPECT_EQ(take_all(1.0, work_s).dropped, 0U);
@@ -71,9 +72,10 @@ TEST(LiveCamera, OneLateFrameCostsNothingIfTheNextIsFast) {
   EXPECT_EQ(take_all(1.0, work_s).dropped, 1U);
 }
 
-TEST(LiveCamera, CanBeGivenUp) {
+TEST(ClockedStream, CanBeGivenUp) {
   TestClock clock;
-  LiveCamera camera(FrameSource(wall_sequence(), wall_frames()), wall_sequence(), 1, clock);
+  TumFolder wall(wall_sequence());
+  ClockedStream camera(wall, 1, clock);
   EXPECT_TRUE(camera.next());
 }
 

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "stillmap/sensor/frame_selection.hpp"
+#include "stillmap/sensor/frame_stream.hpp"
+#include "stillmap/sensor/tum_sequence.hpp"
+
+namespace stillmap {
+
+/// Plays a sequence in the layout of the TUM RGB-D benchmark, or a part of it, as fast as it is
+/// asked. Ids of frames are their places in the whole sequence.
+class TumFolder : public FrameStream {
+ public:
+  /// Throws Error for a selection that begins behind the last frame. An end behind it is the last
+  /// frame.
+  explicit TumFolder(TumSequence sequence, const FrameSelection& selection = {});
+
+  [[nodiscard]] const CameraModel& camera() const override { return sequence_.camera(); }
+  [[nodiscard]] std::optional<std::size_t> size() const override;
+  [[nodiscard]] std::optional<StreamedFrame> next() override;
+
+ private:
+  TumSequence sequence_;
+  FrameSelection selection_;
+  std::size_t end_;
+  std::size_t next_;
+};
+
+}  // namespace stillmap

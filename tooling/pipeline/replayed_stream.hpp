@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "stillmap/sensor/frame_stream.hpp"
+#include "tooling/pipeline/live_record.hpp"
+
+namespace stillmap {
+
+/// Plays of another stream the frames that a live run has processed, as its record has them. All
+/// other frames are dropped.
+class ReplayedStream : public FrameStream {
+ public:
+  /// Both outlive this.
+  ReplayedStream(FrameStream& stream, const LiveRecord& record)
+      : stream_(stream), record_(record) {}
+
+  [[nodiscard]] const CameraModel& camera() const override { return stream_.camera(); }
+  [[nodiscard]] std::optional<std::size_t> size() const override { return record_.size(); }
+
+  /// The next frame of the record, never a damaged one. Throws Error for a frame of the record that
+  /// the stream lacks, that has another stamp there or that is damaged.
+  [[nodiscard]] std::optional<StreamedFrame> next() override;
+
+  /// The number of frames that were left out before the one that next() gave last.
+  [[nodiscard]] std::size_t dropped() const { return dropped_; }
+
+ private:
+  FrameStream& stream_;
+  const LiveRecord& record_;
+  std::size_t next_ = 0;
+  std::size_t dropped_ = 0;
+};
+
+}  // namespace stillmap
