@@ -10,6 +10,7 @@
 #include "apps/commands.hpp"
 #include "apps/progress_bar.hpp"
 #include "apps/steady_clock.hpp"
+#include "apps/version.hpp"
 #include "stillmap/config/config_io.hpp"
 #include "stillmap/core/error.hpp"
 #include "stillmap/core/nearest_name.hpp"
@@ -24,7 +25,6 @@
 #include "tooling/pipeline/run_sequence.hpp"
 #include "tooling/report/time_summary.hpp"
 #include "tooling/report/tracking_gaps.hpp"
-#include "version.hpp"
 
 namespace stillmap {
 namespace {
