@@ -13,7 +13,7 @@
 #include "stillmap/session/session_io.hpp"
 #include "stillmap/session/session_map.hpp"
 #include "stillmap/system/system.hpp"
-#include "tests/support/image_files.hpp"
+#include "tests/support/files.hpp"
 #include "tooling/eval/ate.hpp"
 #include "tooling/eval/statistics.hpp"
 

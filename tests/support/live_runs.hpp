@@ -8,7 +8,7 @@
 #include "stillmap/core/error.hpp"
 #include "stillmap/sensor/clock.hpp"
 #include "stillmap/sensor/tum_sequence.hpp"
-#include "tests/support/image_files.hpp"
+#include "tests/support/files.hpp"
 #include "tests/support/plane_sequence.hpp"
 #include "tooling/pipeline/run_sequence.hpp"
 
