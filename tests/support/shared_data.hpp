@@ -22,7 +22,7 @@ namespace stillmap {
 }  // namespace stillmap
 
 /// Skips the test, or all tests of a fixture in its SetUp, where this recorded data is absent.
-#define STILLMAP_NEED_SHARED_DATA(name)                       \
+#define STILLMAP_NEED_SHARED_DATA(name)                        \
   if (!std::filesystem::exists(::stillmap::shared_data(name))) \
-  GTEST_SKIP() << ::stillmap::shared_data(name)               \
+  GTEST_SKIP() << ::stillmap::shared_data(name)                \
                << " is not there: set STILLMAP_DATA to the folder that holds it"
