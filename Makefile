@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # From a fresh clone on Debian 12: `make demo` or `make test`, in either order. The work is CMake's;
 # this only installs what is missing and names the usual steps.
-.PHONY: setup models build test demo bench format tidy clean
+.PHONY: setup models configure build program test test-fast demo bench format tidy clean
 .DEFAULT_GOAL := build
 
 program := build/release/bin/stillmap
@@ -22,12 +22,22 @@ models: setup
 	@tools/fetch_models
 	@test ! -f build/release/build.ninja || cmake --preset release >/dev/null
 
-build: setup
+configure: setup
 	@test -f build/release/build.ninja || cmake --preset release
+
+build: configure
 	@cmake --build --preset release --parallel
+
+# The program and what it links, no test.
+program: configure
+	@cmake --build --preset release --parallel --target stillmap_program
 
 test: build
 	@ctest --preset release --parallel "$$(nproc)" --no-tests=error
+
+# The tests that take less than a minute together (cmake/slow_tests.cmake names the others).
+test-fast: build
+	@ctest --preset release --parallel "$$(nproc)" --no-tests=error --label-regex fast
 
 # The networks of `make models`, where they are or can be had, find the people; else the renderer
 # tells, with a network's faults.
@@ -47,7 +57,7 @@ demo: setup
 	@echo "report      $(demo)/run/report.html"
 
 # Rendered under another name first, so that an interrupted one is not taken for the whole.
-$(demo)/sequence: | build
+$(demo)/sequence: | program
 	@rm -rf $@ $@.partial && mkdir -p $(demo)
 	@$(program) synth $@.partial --scene walking_xyz --frames 150 --detections imperfect
 	@mv $@.partial $@

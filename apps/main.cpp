@@ -12,8 +12,8 @@
 
 #include "apps/command_line.hpp"
 #include "apps/commands.hpp"
+#include "apps/version.hpp"
 #include "stillmap/core/error.hpp"
-#include "version.hpp"
 
 namespace stillmap {
 

@@ -2,7 +2,10 @@
 # OpenCV's targets opencv_core, opencv_imgproc, ...: from its own CMake package where that is
 # installed, else from headers and libraries alone. Debian puts the CMake package into libopencv-dev,
 # which pulls in some 500 MB (GDAL, VTK, Qt) that nothing here uses.
-set(stillmap_opencv_modules core imgproc features2d calib3d)
+set(stillmap_opencv_modules core imgproc)
+if(STILLMAP_BUILD_TESTS) # what ours is compared with
+  list(APPEND stillmap_opencv_modules features2d calib3d)
+endif()
 find_package(OpenCV 4.5 CONFIG QUIET COMPONENTS ${stillmap_opencv_modules})
 if(NOT OpenCV_FOUND)
   find_path(STILLMAP_OPENCV_INCLUDE opencv2/core.hpp PATH_SUFFIXES opencv4 REQUIRED)

@@ -28,15 +28,19 @@ function(stillmap_precompiled NAME)
   configure_file(${PROJECT_BINARY_DIR}/precompiled/${NAME}.cpp.in ${PROJECT_BINARY_DIR}/precompiled/${NAME}.cpp COPYONLY)
   add_library(${NAME} OBJECT ${PROJECT_BINARY_DIR}/precompiled/${NAME}.cpp)
   target_link_libraries(${NAME} PRIVATE stillmap_options Eigen3::Eigen opencv_core fmt::fmt Threads::Threads)
+  set_target_properties(${NAME} PROPERTIES UNITY_BUILD OFF)
   target_precompile_headers(${NAME} PRIVATE
     <algorithm> <array> <cmath> <cstddef> <cstdint> <deque> <filesystem> <functional> <future> <map> <memory> <optional>
     <set> <span> <string> <string_view> <thread> <utility> <vector>
     <Eigen/Core> <Eigen/Geometry> <fmt/core.h> <opencv2/core/mat.hpp> ${ARGN})
 endfunction()
+# Tests link libraries that are optimised in full; their own files are compiled with less, in less time.
+set(stillmap_test_optimization $<$<NOT:$<CONFIG:Debug>>:-O1>)
 stillmap_precompiled(stillmap_precompiled_library)
 if(STILLMAP_BUILD_TESTS)
   stillmap_precompiled(stillmap_precompiled_tests <gmock/gmock.h> <gtest/gtest.h>)
   target_link_libraries(stillmap_precompiled_tests PRIVATE GTest::gmock)
+  target_compile_options(stillmap_precompiled_tests PRIVATE ${stillmap_test_optimization})
 endif()
 
 # An executable whose files read them: -fPIC as they were made with, not -fPIE.
@@ -44,6 +48,24 @@ function(stillmap_use_precompiled TARGET NAME)
   set_target_properties(${TARGET} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
   target_compile_options(${TARGET} PRIVATE -fPIC)
   target_precompile_headers(${TARGET} REUSE_FROM ${NAME})
+endfunction()
+
+# The tests of a program get the label fast or slow: cmake/slow_tests.cmake has the slow ones.
+include(slow_tests)
+function(stillmap_discover_tests NAME)
+  set(slow ${stillmap_slow_tests_${NAME}})
+  list(JOIN slow ":" slow)
+  set(discovery TEST_PREFIX ${NAME}. DISCOVERY_TIMEOUT 60)
+  if(slow STREQUAL "*")
+    gtest_discover_tests(${NAME}_test ${discovery} PROPERTIES TIMEOUT 300 LABELS slow)
+  elseif(slow)
+    gtest_discover_tests(${NAME}_test ${discovery} TEST_FILTER ${slow} TEST_LIST ${NAME}_slow
+      PROPERTIES TIMEOUT 300 LABELS slow)
+    gtest_discover_tests(${NAME}_test ${discovery} TEST_FILTER "-${slow}" TEST_LIST ${NAME}_fast
+      PROPERTIES TIMEOUT 300 LABELS fast)
+  else()
+    gtest_discover_tests(${NAME}_test ${discovery} PROPERTIES TIMEOUT 300 LABELS fast)
+  endif()
 endfunction()
 
 function(stillmap_tests NAME)
@@ -55,11 +77,12 @@ function(stillmap_tests NAME)
   target_include_directories(${NAME}_test PRIVATE ${PROJECT_SOURCE_DIR})
   target_link_libraries(${NAME}_test PRIVATE stillmap_options ${ARG_USES} GTest::gmock GTest::gtest_main)
   stillmap_use_precompiled(${NAME}_test stillmap_precompiled_tests)
+  target_compile_options(${NAME}_test PRIVATE ${stillmap_test_optimization})
   target_compile_definitions(${NAME}_test PRIVATE
     STILLMAP_SOURCE_DIR="${PROJECT_SOURCE_DIR}" STILLMAP_BINARY_DIR="${PROJECT_BINARY_DIR}")
-  set_target_properties(${NAME}_test PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
-  gtest_discover_tests(${NAME}_test TEST_PREFIX ${NAME}. DISCOVERY_TIMEOUT 60
-    PROPERTIES TIMEOUT 300)
+  set_target_properties(${NAME}_test PROPERTIES
+    RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests UNITY_BUILD OFF)
+  stillmap_discover_tests(${NAME})
 endfunction()
 
 function(stillmap_module)

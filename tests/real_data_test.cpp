@@ -4,7 +4,7 @@
 
 #include "stillmap/io/trajectory_io.hpp"
 #include "stillmap/sensor/tum_folder.hpp"
-#include "tests/support/image_files.hpp"
+#include "tests/support/shared_data.hpp"
 #include "tooling/eval/ate.hpp"
 #include "tooling/pipeline/run_sequence.hpp"
 
@@ -19,10 +19,8 @@ struct Accuracy {
 class Freiburg1Xyz : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = shared_data_folder() / "tum_fr1_xyz_360";
-    if (!std::filesystem::exists(folder_)) {
-      GTEST_SKIP() << folder_ << " is not there: set STILLMAP_DATA to the folder that holds it";
-    }
+    STILLMAP_NEED_SHARED_DATA("tum_fr1_xyz_360");
+    folder_ = shared_data("tum_fr1_xyz_360");
   }
 
   [[nodiscard]] Accuracy measure(const SystemConfig& config, std::size_t stride) const {

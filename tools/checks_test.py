@@ -82,6 +82,8 @@ class Files(unittest.TestCase):
                          ["F:1: exit(: the library never ends the process"])
         self.assertEqual(self.problems("// std::cout, exit(1)\nconst char* k = \"exit(1)\";\n"), [])
         self.assertEqual(self.problems("void on_exit_now();\nint exit_code = 0;\n"), [])
+        self.assertEqual(self.problems("void f() { usleep(1); }\n", "tooling/x/y.cpp"),
+                         ["F:1: usleep: the library never sleeps"])
         self.assertEqual(self.problems("void f() { std::cout << 1; }\n", "apps/y.cpp"), [])
 
     def test_using_namespace(self):
@@ -91,29 +93,44 @@ class Files(unittest.TestCase):
 
 
 class Layers(unittest.TestCase):
+    MODULE = "# SPDX\n# Holds {0}.\nstillmap_module(NAME {0} {1})"
+
     def problems(self, files):
         with tempfile.TemporaryDirectory() as folder:
             root = pathlib.Path(folder)
             for name, text in files.items():
                 (root / name).parent.mkdir(parents=True, exist_ok=True)
                 (root / name).write_text(text)
-            modules = check_layers.read_modules(root / "stillmap")
-            return [*check_layers.check_order(modules), *check_layers.check_includes(root, modules),
-                    *check_layers.check_complete(root, modules)]
+            _, self.before_writing = check_layers.check_all(root)
+            check_layers.check_all(root, write=True)
+            modules, problems = check_layers.check_all(root)
+            self.table = check_layers.table(modules)
+            return problems
 
     def tree(self):
+        table = f"before\n{check_layers.TABLE_BEGIN}\nold\n{check_layers.TABLE_END}\nafter\n"
         return {
-            "stillmap/CMakeLists.txt": "add_subdirectory(low)\nadd_subdirectory(mid)  # x\nadd_subdirectory(top)\n",
-            "stillmap/low/CMakeLists.txt": "stillmap_module(NAME low HEADERS l.hpp SOURCES l.cpp)",
+            "docs/architecture.md": table,
+            "CMakeLists.txt": "add_subdirectory(stillmap)\nif(X)\n  add_subdirectory(tooling)\nendif()\n"
+                              "add_subdirectory(tests/support)\n",
+            "stillmap/CMakeLists.txt":
+                "add_subdirectory(low)\nadd_subdirectory(slam/mid)  # add_subdirectory(no)\nadd_subdirectory(top)\n",
+            "tooling/CMakeLists.txt": "add_subdirectory(tool)\n",
+            "stillmap/low/CMakeLists.txt": self.MODULE.format("low", "PRIVATE_HEADERS inner.hpp"),
             "stillmap/low/l.hpp": "",
             "stillmap/low/inner.hpp": "",
             "stillmap/low/l.cpp": '#include "stillmap/low/l.hpp"\n#include "stillmap/low/inner.hpp"\n',
-            "stillmap/mid/CMakeLists.txt": "stillmap_module(NAME mid HEADERS m.hpp USES low)",
-            "stillmap/mid/m.hpp": '#include "stillmap/low/l.hpp"\n',
-            "stillmap/top/CMakeLists.txt":
-                "stillmap_module(NAME top HEADERS t.hpp\n  USES mid\n  SOURCES t.cpp)",
+            "stillmap/slam/mid/CMakeLists.txt":
+                self.MODULE.format("mid", "USES low TEST_USES top test_support"),
+            "stillmap/slam/mid/m.hpp": '#include <vector>\n#include "stillmap/low/l.hpp"\n',
+            "stillmap/slam/mid/m_test.cpp": '#include "tests/support/s.hpp"\n',
+            "stillmap/top/CMakeLists.txt": self.MODULE.format("top", "\n  USES mid\n  PUBLIC_LIBS x"),
             "stillmap/top/t.hpp": "",
-            "stillmap/top/t.cpp": '#include "stillmap/low/l.hpp"\n',
+            "stillmap/top/t.cpp": '#include "stillmap/slam/mid/m.hpp"\n',
+            "tooling/tool/CMakeLists.txt": self.MODULE.format("tool", "USES top"),
+            "tooling/tool/t.hpp": '#include "stillmap/top/t.hpp"\n',
+            "tests/support/CMakeLists.txt": self.MODULE.format("test_support", ""),
+            "tests/support/s.hpp": '#include "stillmap/top/t.hpp"\n#include "stillmap/low/inner.hpp"\n',
         }
 
     def changed(self, name, text):
@@ -121,33 +138,62 @@ class Layers(unittest.TestCase):
 
     def test_a_good_tree(self):
         self.assertEqual(self.problems(self.tree()), [])
+        self.assertEqual(self.before_writing, ["docs/architecture.md: the table of modules is out of date: "
+                                               "tools/check_layers.py --write"])
+        self.assertEqual(self.table.split("\n")[2:], [
+            "| `stillmap/low/` | `low` | Holds low | - |",
+            "| `stillmap/slam/` | `mid` | Holds mid | low |",
+            "| `stillmap/top/` | `top` | Holds top | mid |",
+            "| `tooling/` | `tool` | Holds tool | top |",
+            "| `tests/` | `test_support` | Holds test_support | - |"])
 
     def test_bad_includes(self):
-        self.assertEqual(self.changed("stillmap/low/l.cpp", '\n#include "stillmap/mid/m.hpp"\n'),
-                         ["stillmap/low/l.cpp:2: stillmap/mid/m.hpp: low does not use mid"])
-        self.assertEqual(self.changed("stillmap/low/l.hpp", '#include "stillmap/low/inner.hpp"\n'),
-                         ["stillmap/low/l.hpp:1: stillmap/low/inner.hpp: "
-                          "it is no public header (HEADERS) of low"])
-        self.assertEqual(self.changed("stillmap/top/t.cpp", '#include "stillmap/low/inner.hpp"\n'),
-                         ["stillmap/top/t.cpp:1: stillmap/low/inner.hpp: "
-                          "it is no public header (HEADERS) of low"])
-        self.assertEqual(len(self.changed("stillmap/top/t.cpp", '#include "l.hpp"\n')), 1)
-        self.assertEqual(len(self.changed("stillmap/top/t.cpp", '#include "stillmap/low/no.hpp"\n')), 1)
+        low = "stillmap/low/l.cpp"
+        self.assertEqual(self.changed(low, '\n#include "stillmap/slam/mid/m.hpp"\n'),
+                         [f"{low}:2: stillmap/slam/mid/m.hpp: low does not use mid"])
+        for bad in ("l.hpp", "stillmap/low/no.hpp"):
+            self.assertEqual(self.changed(low, f'#include "{bad}"\n'),
+                             [f"{low}:1: {bad}: there is no such file; expected a full path from the root"])
+        self.assertEqual(self.changed(low, '#include "tooling/tool/t.hpp"\n'),
+                         [f"{low}:1: tooling/tool/t.hpp: stillmap/ must not use tooling/"])
+        self.assertEqual(self.changed("stillmap/top/a.cpp", '#include "stillmap/low/l.hpp"\n'),
+                         ["stillmap/top/a.cpp:1: stillmap/low/l.hpp: top does not use low"])
 
-    def test_bad_order(self):
+    def test_private_headers(self):
+        file = "stillmap/slam/mid/m.hpp"
+        self.assertEqual(self.changed(file, '#include "stillmap/low/inner.hpp"\n'),
+                         [f"{file}:1: stillmap/low/inner.hpp: it is a private header (PRIVATE_HEADERS) of low"])
         self.assertEqual(self.changed("stillmap/low/CMakeLists.txt",
-                                      "stillmap_module(NAME low HEADERS l.hpp SOURCES l.cpp USES mid)"),
-                         ["stillmap/low/CMakeLists.txt: USES mid, which does not stand above low"])
+                                      self.MODULE.format("low", "PRIVATE_HEADERS inner.hpp no.hpp")),
+                         ["stillmap/low/CMakeLists.txt: PRIVATE_HEADERS no.hpp, which is no file"])
 
-    def test_missing_module(self):
-        tree = self.tree()
-        tree["stillmap/CMakeLists.txt"] += "add_subdirectory(gone)\n"
-        self.assertEqual(self.problems(tree),
-                         ["stillmap/gone/CMakeLists.txt: expected stillmap_module(NAME gone ...)"])
+    def test_bad_calls(self):
+        low, tool = "stillmap/low/CMakeLists.txt", "tooling/tool/CMakeLists.txt"
+        self.assertEqual(self.changed(low, self.MODULE.format("other", "PRIVATE_HEADERS inner.hpp")),
+                         [f"{low}: expected stillmap_module(NAME low ...)"])
+        self.assertEqual(self.changed(low, "stillmap_module(NAME low PRIVATE_HEADERS inner.hpp)"),
+                         [f"{low}: expected a comment line that says what the module holds"])
+        self.assertEqual(self.changed(low, self.MODULE.format("low", "USES mid PRIVATE_HEADERS inner.hpp")),
+                         [f"{low}: USES mid, which is not added before low",
+                          f"{low}: USES mid, which no file includes"])
+        self.assertEqual(self.changed(tool, self.MODULE.format("tool", "USES top TEST_USES mid gone")),
+                         [f"{tool}: TEST_USES gone, which is no module",
+                          f"{tool}: TEST_USES mid, which no file includes",
+                          f"{tool}: TEST_USES gone, which no file includes"])
 
-    def test_forgotten_file(self):
-        self.assertEqual(self.changed("stillmap/mid/m.cpp", ""),
-                         ["stillmap/mid/m.cpp: listed in neither SOURCES nor TESTS"])
+    def test_a_forgotten_module(self):
+        self.assertEqual(self.changed("stillmap/more/CMakeLists.txt", self.MODULE.format("more", "")),
+                         ["stillmap/more/CMakeLists.txt: a module that no add_subdirectory adds"])
+
+    def test_the_table_is_checked(self):
+        begin, end = check_layers.TABLE_BEGIN, check_layers.TABLE_END
+        modules = {"stillmap/low": {"USES": [], "holds": "this"}}
+        text = check_layers.with_table(f"a\n{begin}\nx\n{end}\nb\n", modules)
+        self.assertEqual(text, f"a\n{begin}\n{check_layers.table(modules)}\n{end}\nb\n")
+        self.assertEqual(check_layers.with_table(text, modules), text)
+        self.assertIsNone(check_layers.with_table("no markers", modules))
+        self.assertEqual(self.changed("docs/architecture.md", "no markers"),
+                         [f"docs/architecture.md: expected the lines {begin} and {end}"])
 
 
 if __name__ == "__main__":

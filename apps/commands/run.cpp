@@ -11,6 +11,7 @@
 #include "apps/option_value.hpp"
 #include "apps/progress_bar.hpp"
 #include "apps/steady_clock.hpp"
+#include "apps/version.hpp"
 #include "stillmap/config/config_io.hpp"
 #include "stillmap/core/error.hpp"
 #include "stillmap/core/nearest_name.hpp"
@@ -26,7 +27,6 @@
 #include "tooling/pipeline/run_sequence.hpp"
 #include "tooling/report/time_summary.hpp"
 #include "tooling/report/tracking_gaps.hpp"
-#include "version.hpp"
 
 namespace stillmap {
 namespace {

@@ -11,7 +11,7 @@
 #include "simulation/scene/office.hpp"
 #include "stillmap/core/error.hpp"
 #include "stillmap/io/atomic_file.hpp"
-#include "tests/support/image_files.hpp"
+#include "tests/support/files.hpp"
 
 namespace stillmap {
 namespace {

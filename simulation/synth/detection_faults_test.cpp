@@ -17,7 +17,7 @@
 
 #include "simulation/synth/truth.hpp"
 #include "stillmap/perception/detections/detections_io.hpp"
-#include "tests/support/image_files.hpp"
+#include "tests/support/files.hpp"
 
 namespace stillmap {
 namespace {

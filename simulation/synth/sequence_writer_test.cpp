@@ -16,7 +16,7 @@
 #include "stillmap/io/trajectory_io.hpp"
 #include "stillmap/perception/detections/detections_io.hpp"
 #include "stillmap/sensor/tum_sequence.hpp"
-#include "tests/support/image_files.hpp"
+#include "tests/support/files.hpp"
 
 namespace stillmap {
 namespace {

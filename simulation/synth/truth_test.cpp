@@ -12,7 +12,8 @@
 #include "stillmap/io/atomic_file.hpp"
 #include "stillmap/io/image_io.hpp"
 #include "stillmap/sensor/camera_io.hpp"
-#include "tests/support/image_files.hpp"
+#include "tests/support/files.hpp"
+#include "tests/support/shared_data.hpp"
 
 namespace stillmap {
 namespace {
@@ -58,10 +59,9 @@ TEST(FrameObjects, KnowEveryIdOfTheMask) {
 
 // Another program's boxes and counts of its own masks.
 TEST(FrameObjects, AreThoseOfGivenSequences) {
-  const fs::path data = shared_data_folder();
-  if (data.empty()) GTEST_SKIP() << "the shared test data is absent (set STILLMAP_DATA)";
   for (const char* name : {"twin_walking_xyz", "fr1_xyz_walkers"}) {
-    const fs::path truth = data / name / "truth";
+    STILLMAP_NEED_SHARED_DATA(name);
+    const fs::path truth = shared_data(name) / "truth";
     const Json root = Json::parse(read_file(truth / "objects.json", 100000000));
     int checked = 0;
     for (const Json& frame : root.at("frames")) {
@@ -130,10 +130,9 @@ TEST(FormatObjectsJson, GivesBackTheCamera) {
 
 // The keys that another program wrote are there.
 TEST(FormatObjectsJson, HasTheKeysOfAGivenSequence) {
-  const fs::path data = shared_data_folder();
-  if (data.empty()) GTEST_SKIP() << "the shared test data is absent (set STILLMAP_DATA)";
+  STILLMAP_NEED_SHARED_DATA("twin_walking_xyz");
   const Json given =
-      Json::parse(read_file(data / "twin_walking_xyz" / "truth" / "objects.json", 100000000));
+      Json::parse(read_file(shared_data("twin_walking_xyz/truth/objects.json"), 100000000));
   const std::vector<TruthObject> objects = {{1, "person", "person_1", true, true}};
   std::vector<TruthFrame> frames(1);
   frames[0].stamp.text = "0.5";

@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "stillmap/core/error.hpp"
-#include "tests/support/image_files.hpp"
+#include "tests/support/files.hpp"
 
 namespace stillmap {
 namespace {

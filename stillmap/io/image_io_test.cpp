@@ -15,7 +15,7 @@
 
 #include "stillmap/io/atomic_file.hpp"
 #include "stillmap/io/png_codec.hpp"
-#include "tests/support/image_files.hpp"
+#include "tests/support/files.hpp"
 
 namespace stillmap {
 namespace {

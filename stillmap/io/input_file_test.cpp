@@ -6,7 +6,7 @@
 
 #include "stillmap/core/error.hpp"
 #include "stillmap/io/atomic_file.hpp"
-#include "tests/support/image_files.hpp"
+#include "tests/support/files.hpp"
 
 namespace stillmap {
 namespace {

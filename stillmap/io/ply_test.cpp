@@ -5,7 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "stillmap/io/atomic_file.hpp"
-#include "tests/support/image_files.hpp"
+#include "tests/support/files.hpp"
+#include "tests/support/shared_data.hpp"
 
 namespace stillmap {
 namespace {
@@ -192,9 +193,8 @@ TEST(ReadPly, RefusesOtherFiles) {
 }
 
 TEST(ReadPly, ReadsTheSharedMaps) {
-  const std::filesystem::path data = shared_data_folder();
-  if (data.empty()) GTEST_SKIP() << "no shared test data: set STILLMAP_DATA";
-  EXPECT_EQ(read_ply(data / "fr1_xyz_walkers/truth/static_map.ply").size(), 308853U);
+  STILLMAP_NEED_SHARED_DATA("fr1_xyz_walkers");
+  EXPECT_EQ(read_ply(shared_data("fr1_xyz_walkers/truth/static_map.ply")).size(), 308853U);
 }
 
 }  // namespace

@@ -6,7 +6,8 @@
 
 #include "stillmap/geometry/se3.hpp"
 #include "stillmap/io/atomic_file.hpp"
-#include "tests/support/image_files.hpp"
+#include "tests/support/files.hpp"
+#include "tests/support/shared_data.hpp"
 
 namespace stillmap {
 namespace {
@@ -100,12 +101,11 @@ TEST(FormatTrajectory, IsTheTumFormat) {
 }
 
 TEST(ReadTrajectory, ReadsThePublishedFiles) {
-  const std::filesystem::path data = shared_data_folder();
-  if (data.empty()) GTEST_SKIP() << "no shared test data: set STILLMAP_DATA";
+  STILLMAP_NEED_SHARED_DATA("trajectories");
+  const std::filesystem::path folder = shared_data("trajectories");
   // 2484 lines of poses of which two have one stamp; two written late.
-  EXPECT_EQ(read_trajectory(data / "trajectories/fr3_walking_static.groundtruth.txt").size(),
-            2483U);
-  const Trajectory late = read_trajectory(data / "trajectories/fr3_walking_xyz.v3d-slam.txt");
+  EXPECT_EQ(read_trajectory(folder / "fr3_walking_static.groundtruth.txt").size(), 2483U);
+  const Trajectory late = read_trajectory(folder / "fr3_walking_xyz.v3d-slam.txt");
   EXPECT_EQ(late.size(), 829U);
   for (std::size_t i = 1; i < late.size(); ++i) {
     ASSERT_LT(late[i - 1].stamp.seconds, late[i].stamp.seconds);

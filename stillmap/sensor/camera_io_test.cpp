@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "stillmap/io/atomic_file.hpp"
-#include "tests/support/image_files.hpp"
+#include "tests/support/files.hpp"
 
 namespace stillmap {
 namespace {

@@ -12,7 +12,8 @@
 #include "stillmap/io/atomic_file.hpp"
 #include "stillmap/io/image_io.hpp"
 #include "stillmap/sensor/camera_io.hpp"
-#include "tests/support/image_files.hpp"
+#include "tests/support/files.hpp"
+#include "tests/support/shared_data.hpp"
 
 namespace stillmap {
 namespace {
@@ -203,8 +204,8 @@ TEST_F(TumSequenceTest, RefusesBadImages) {
 }
 
 TEST(TumSequenceOnData, OpensTheSharedSequences) {
-  const fs::path data = shared_data_folder();
-  if (data.empty()) GTEST_SKIP() << "no shared test data: set STILLMAP_DATA";
+  STILLMAP_NEED_SHARED_DATA("twin_walking_xyz");
+  const fs::path data = shared_data("");
   const TumSequence twin = TumSequence::open(data / "twin_walking_xyz");
   EXPECT_EQ(twin.size(), 300U);
   EXPECT_EQ(twin.camera().fx, 535.4);

@@ -9,7 +9,7 @@
 
 #include "stillmap/core/error.hpp"
 #include "stillmap/io/atomic_file.hpp"
-#include "tests/support/image_files.hpp"
+#include "tests/support/files.hpp"
 #include "tests/support/session_sections.hpp"
 #include "tests/support/sessions.hpp"
 

@@ -6,8 +6,8 @@
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
-#include "simulation/synth/sequence.hpp"
 #include "stillmap/system/system.hpp"
+#include "tests/support/rendered_room.hpp"
 #include "tooling/eval/ate.hpp"
 #include "tooling/eval/map_quality.hpp"
 
@@ -16,23 +16,9 @@ namespace {
 
 constexpr std::uint32_t kFrames = 60;  // one way
 
-const SyntheticSequence& room() {
-  static const SyntheticSequence kRoom = [] {
-    SyntheticOptions options;
-    options.camera = synthetic_camera(320, 240);
-    options.frames = kFrames;
-    return SyntheticSequence(options);
-  }();
+const RenderedRoom& room() {
+  static const RenderedRoom kRoom(kFrames);
   return kRoom;
-}
-
-const std::vector<SyntheticFrame>& rendered() {
-  static const std::vector<SyntheticFrame> kRendered = [] {
-    std::vector<SyntheticFrame> frames;
-    for (std::uint32_t k = 0; k < kFrames; ++k) frames.push_back(room().render(FrameId(k)));
-    return frames;
-  }();
-  return kRendered;
 }
 
 std::uint32_t at_step(std::uint32_t step) {
@@ -45,8 +31,9 @@ MapTruth truth() {
   const cv::Mat2f rays = pixel_rays(room().camera());
   PointCloud surface;
   for (std::uint32_t k = 0; k < kFrames; k += 5) {
-    const Eigen::Isometry3d T = room().pose(FrameId(0)).inverse() * room().pose(FrameId(k));
-    const cv::Mat1f& depth = rendered()[k].truth.depth.mat;
+    const Eigen::Isometry3d T = room().pose(0).inverse() * room().pose(k);
+    const SyntheticFrame rendered = room().sequence().render(FrameId(k));
+    const cv::Mat1f& depth = rendered.truth.depth.mat;
     for (int v = 0; v < depth.rows; ++v) {
       for (int u = 0; u < depth.cols; ++u) {
         const double z = depth(v, u);
@@ -73,10 +60,10 @@ Outcome go(std::uint32_t ways, const SystemConfig& config) {
   Trajectory ground_truth;
   for (std::uint32_t step = 0; step < ways * kFrames; ++step) {
     const std::uint32_t k = at_step(step);
-    RgbdFrame frame = *rendered()[k].frame;
+    RgbdFrame frame = *room().frame(k);
     frame.id = FrameId(step);
     frame.stamp = {1000 + step / 30.0, fmt::format("{:.6f}", 1000 + step / 30.0)};
-    ground_truth.push_back({frame.stamp, room().pose(FrameId(k))});
+    ground_truth.push_back({frame.stamp, room().pose(k)});
     const FrameResult result = system.process(std::make_shared<const RgbdFrame>(std::move(frame)));
     outcome.inserted += result.is_keyframe ? 1 : 0;
   }

@@ -7,13 +7,13 @@
 
 #include <gtest/gtest.h>
 
-#include "simulation/synth/sequence.hpp"
 #include "stillmap/config/config_io.hpp"
 #include "stillmap/session/merge_sessions.hpp"
 #include "stillmap/session/session_io.hpp"
 #include "stillmap/session/session_map.hpp"
 #include "stillmap/system/system.hpp"
-#include "tests/support/image_files.hpp"
+#include "tests/support/files.hpp"
+#include "tests/support/rendered_room.hpp"
 #include "tooling/eval/ate.hpp"
 #include "tooling/eval/statistics.hpp"
 
@@ -23,32 +23,9 @@ namespace {
 constexpr std::uint32_t kRound = 600;  // frames; the beginning is seen again after it
 constexpr std::uint32_t kEnd = 660;
 
-const SyntheticSequence& office() {
-  static const SyntheticSequence kOffice = [] {
-    SyntheticOptions options;
-    options.camera = synthetic_camera(320, 240);
-    options.path = PathKind::kLoop;
-    options.frames = kEnd;
-    return SyntheticSequence(options);
-  }();
+const RenderedRoom& office() {
+  static const RenderedRoom kOffice(kEnd, PathKind::kLoop);
   return kOffice;
-}
-
-// Rendered once, when first asked for.
-FramePtr frame(std::uint32_t k) {
-  static std::vector<FramePtr> rendered(kEnd);
-  if (!rendered[k]) rendered[k] = office().frame(FrameId(k));
-  return rendered[k];
-}
-
-FramePtr dark_frame(std::uint32_t k) {
-  RgbdFrame dark;
-  dark.id = FrameId(k);
-  dark.stamp = office().stamp(dark.id);
-  dark.color = ColorImage(cv::Mat3b(240, 320, cv::Vec3b(0, 0, 0)));
-  dark.gray = GrayImage(cv::Mat1b(240, 320, std::uint8_t{0}));
-  dark.depth = DepthImage(cv::Mat1f(240, 320, 0.0F));
-  return std::make_shared<const RgbdFrame>(std::move(dark));
 }
 
 SystemConfig settings(bool loops = true) {
@@ -61,18 +38,18 @@ SystemConfig settings(bool loops = true) {
 
 // Every second frame: 15 a second.
 void process(System& system, std::uint32_t begin, std::uint32_t end) {
-  for (std::uint32_t k = begin; k < end; k += 2) (void)system.process(frame(k));
+  for (std::uint32_t k = begin; k < end; k += 2) (void)system.process(office().frame(k));
 }
 
 void cover(System& system, std::uint32_t begin, std::uint32_t end) {
   for (std::uint32_t k = begin; k < end; k += 2) {
-    EXPECT_EQ(system.process(dark_frame(k)).status, TrackingStatus::kLost);
+    EXPECT_EQ(system.process(office().dark_frame(k)).status, TrackingStatus::kLost);
   }
 }
 
 double error_m(const Trajectory& trajectory) {
   const std::optional<AteResult> ate =
-      absolute_trajectory_error(office().ground_truth(), trajectory);
+      absolute_trajectory_error(office().sequence().ground_truth(), trajectory);
   return ate ? ate->translation_m.rmse : std::numeric_limits<double>::infinity();
 }
 
@@ -141,12 +118,11 @@ TEST(SavedSession, IsTrackedAgainstWithOtherFrames) {
   system.load(before.session);
   std::vector<double> errors_m;
   for (std::uint32_t k = 41; k < 160; k += 2) {
-    const TrackedFrame tracked = system.process(frame(k)).tracked;
+    const TrackedFrame tracked = system.process(office().frame(k)).tracked;
     ASSERT_TRUE(has_pose(tracked)) << k;
     EXPECT_EQ(tracked.status == TrackingStatus::kRelocalized, k == 41) << k;
     // Where the saved session has the frame before, and the true motion since; nothing is aligned.
-    const Eigen::Isometry3d T_before_this =
-        office().pose(FrameId(k - 1)).inverse() * office().pose(FrameId(k));
+    const Eigen::Isometry3d T_before_this = office().pose(k - 1).inverse() * office().pose(k);
     const Eigen::Isometry3d expected =
         before.result.trajectory[k / 2].T_world_camera * T_before_this;
     errors_m.push_back((tracked.T_world_camera.translation() - expected.translation()).norm());
@@ -166,7 +142,7 @@ TEST(SavedSession, IsGoneOnFrom) {
   const RunResult result = system.finish();
   system.map().check_consistency();
   EXPECT_EQ(result.trajectory.size(), 50U);
-  EXPECT_EQ(result.trajectory.front().stamp.text, frame(101)->stamp.text);
+  EXPECT_EQ(result.trajectory.front().stamp.text, office().frame(101)->stamp.text);
   EXPECT_GT(result.keyframes.size(), before.result.keyframes.size());
   EXPECT_GT(result.map.size(), before.result.map.size());
   EXPECT_LT(error_m(result.trajectory), 0.05);

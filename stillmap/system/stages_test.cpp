@@ -11,11 +11,11 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
-#include "simulation/synth/sequence.hpp"
 #include "stillmap/config/config_io.hpp"
 #include "stillmap/geometry/se3.hpp"
 #include "stillmap/system/system.hpp"
 #include "tests/support/feature_images.hpp"
+#include "tests/support/rendered_room.hpp"
 #include "tooling/eval/ate.hpp"
 
 namespace stillmap {
@@ -28,23 +28,9 @@ constexpr int kFrayedBegin = 170;      // where depth begins to be wrong
 constexpr float kCurtain_m = 1.0F;     // nearer than anything in the room
 
 // The empty room as a hand-held camera sees it.
-const SyntheticSequence& room() {
-  static const SyntheticSequence kRoom = [] {
-    SyntheticOptions options;
-    options.camera = synthetic_camera(320, 240);
-    options.frames = kFrames;
-    return SyntheticSequence(options);
-  }();
+const RenderedRoom& room() {
+  static const RenderedRoom kRoom(kFrames);
   return kRoom;
-}
-
-const std::vector<FramePtr>& room_frames() {
-  static const std::vector<FramePtr> kRendered = [] {
-    std::vector<FramePtr> frames;
-    for (std::uint32_t k = 0; k < kFrames; ++k) frames.push_back(room().frame(FrameId(k)));
-    return frames;
-  }();
-  return kRendered;
 }
 
 /// The first column that a curtain covers, which comes in from the right.
@@ -94,7 +80,7 @@ using Network = std::function<FrameDetections(std::uint32_t k)>;
 
 FrameDetections empty_frame(std::uint32_t k) {
   FrameDetections found;
-  found.stamp = room().stamp(FrameId(k));
+  found.stamp = room().sequence().stamp(FrameId(k));
   found.mask = ObjectMask(cv::Mat1b(240, 320, std::uint8_t{0}));
   return found;
 }
@@ -128,8 +114,8 @@ double error(Disturbance disturbance, const Network& network, const SystemConfig
     (void)system.process(frame, std::move(objects));
   };
   for (std::uint32_t k = 0; k < kFrames; ++k) {
-    frames.push_back(disturbed(*room_frames()[k], disturbance));
-    truth.push_back({frames[k]->stamp, room().pose(FrameId(k))});
+    frames.push_back(disturbed(*room().frame(k), disturbance));
+    truth.push_back({frames[k]->stamp, room().pose(k)});
     if (auto objects = tracker.push({FrameId(k), network(k), frames[k]->depth})) {
       process(std::move(*objects));
     }

@@ -9,6 +9,7 @@
 #include "simulation/synth/detection_faults.hpp"
 #include "simulation/synth/sequence.hpp"
 #include "stillmap/concurrency/prefetcher.hpp"
+#include "tests/support/rendered_room.hpp"
 #include "tooling/eval/ate.hpp"
 
 namespace stillmap {
@@ -16,33 +17,9 @@ namespace {
 
 constexpr std::uint32_t kFrames = 60;
 
-// A room seen by a hand-held camera, as a Kinect of a quarter of the size sees it.
-const SyntheticSequence& sequence() {
-  static const SyntheticSequence kSequence = [] {
-    SyntheticOptions options;
-    options.camera = synthetic_camera(320, 240);
-    options.frames = kFrames;
-    return SyntheticSequence(options);
-  }();
-  return kSequence;
-}
-
-// Rendered once, when first asked for.
-FramePtr frame(std::uint32_t k) {
-  static std::vector<FramePtr> rendered(kFrames);
-  if (!rendered[k]) rendered[k] = sequence().frame(FrameId(k));
-  return rendered[k];
-}
-
-// The frame with nothing to see on it.
-FramePtr dark_frame(std::uint32_t k) {
-  RgbdFrame dark;
-  dark.id = FrameId(k);
-  dark.stamp = sequence().stamp(dark.id);
-  dark.color = ColorImage(cv::Mat3b(240, 320, cv::Vec3b(0, 0, 0)));
-  dark.gray = GrayImage(cv::Mat1b(240, 320, std::uint8_t{0}));
-  dark.depth = DepthImage(cv::Mat1f(240, 320, 0.0F));
-  return std::make_shared<const RgbdFrame>(std::move(dark));
+const RenderedRoom& room() {
+  static const RenderedRoom kRoom(kFrames);
+  return kRoom;
 }
 
 SystemConfig static_world() {
@@ -62,7 +39,7 @@ FinishedRun run(int threads, std::uint32_t dark_begin = kFrames, std::uint32_t d
   FinishedRun done;
   for (std::uint32_t k = 0; k < kFrames; ++k) {
     const bool dark = k >= dark_begin && k < dark_end;
-    done.frames.push_back(system.process(dark ? dark_frame(k) : frame(k)));
+    done.frames.push_back(system.process(dark ? room().dark_frame(k) : room().frame(k)));
     system.map().check_consistency();
   }
   done.result = system.finish();
@@ -85,7 +62,7 @@ TEST(System, FollowsARenderedCameraAndMapsItsRoom) {
   EXPECT_EQ(done.frames[0].status, TrackingStatus::kInitialized);
   EXPECT_TRUE(done.frames[0].is_keyframe);
   const std::optional<AteResult> ate =
-      absolute_trajectory_error(sequence().ground_truth(), done.result.trajectory);
+      absolute_trajectory_error(room().sequence().ground_truth(), done.result.trajectory);
   ASSERT_TRUE(ate);
   EXPECT_EQ(ate->pairs.size(), kFrames);
   EXPECT_LT(ate->translation_m.rmse, 0.006);
@@ -96,7 +73,7 @@ TEST(System, FollowsARenderedCameraAndMapsItsRoom) {
   EXPECT_TRUE(
       done.result.trajectory[0].T_world_camera.isApprox(Eigen::Isometry3d::Identity(), 1e-12));
   for (std::uint32_t k = 0; k < kFrames; ++k) {
-    EXPECT_EQ(done.result.trajectory[k].stamp.text, sequence().stamp(FrameId(k)).text);
+    EXPECT_EQ(done.result.trajectory[k].stamp.text, room().sequence().stamp(FrameId(k)).text);
   }
 }
 
@@ -119,7 +96,7 @@ TEST(System, GivesTheSameBitsWithAnyNumberOfThreads) {
 // Moved by whole voxels, so that points stay together; a point on the face between two may change.
 TEST(System, MakesItsCloudAgainUnderOtherPoses) {
   System system(static_world(), synthetic_camera(320, 240), {.threads = 1});
-  for (std::uint32_t k = 0; k < kFrames; ++k) (void)system.process(frame(k));
+  for (std::uint32_t k = 0; k < kFrames; ++k) (void)system.process(room().frame(k));
   const RunResult result = system.finish();
   std::vector<std::optional<Eigen::Isometry3d>> same, moved;
   for (const StampedPose& pose : result.trajectory) {
@@ -151,7 +128,7 @@ TEST(System, MarksDarkFramesAsLostAndFindsBack) {
   EXPECT_EQ(done.result.trajectory.size(), kFrames - 10);
   EXPECT_FALSE(done.result.lost_at_end);
   const std::optional<AteResult> ate =
-      absolute_trajectory_error(sequence().ground_truth(), done.result.trajectory);
+      absolute_trajectory_error(room().sequence().ground_truth(), done.result.trajectory);
   ASSERT_TRUE(ate);
   EXPECT_LT(ate->translation_m.rmse, 0.008);
 }
@@ -180,7 +157,7 @@ TEST(System, OfNothingButDarknessGivesNothing) {
 TEST(System, CanBeGivenUpWithJobsPending) {
   for (std::uint32_t frames_done = 1; frames_done < 8; ++frames_done) {
     System system({}, synthetic_camera(320, 240), {.threads = 2});
-    for (std::uint32_t k = 0; k < frames_done; ++k) (void)system.process(frame(k));
+    for (std::uint32_t k = 0; k < frames_done; ++k) (void)system.process(room().frame(k));
   }
 }
 

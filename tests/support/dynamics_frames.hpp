@@ -44,10 +44,15 @@ class TruthSequence {
     std::map<int, double> speeds;                 // of the same, m/s
   };
 
-  /// Null where the data is absent.
-  [[nodiscard]] static std::unique_ptr<TruthSequence> open(const std::filesystem::path& folder) {
-    if (!std::filesystem::is_directory(folder / "truth")) return nullptr;
-    return std::unique_ptr<TruthSequence>(new TruthSequence(folder));
+  explicit TruthSequence(const std::filesystem::path& folder)
+      : sequence_(TumSequence::open(folder)),
+        detections_(DetectionsFolder::open(
+            folder / "detections", {sequence_.camera().width_px, sequence_.camera().height_px})) {
+    std::ifstream file(folder / "truth" / "objects.json");
+    const nlohmann::json truth = nlohmann::json::parse(file);
+    for (const nlohmann::json& frame : truth.at("frames")) {
+      lines_[frame.at("stamp").get<std::string>()] = frame.at("objects");
+    }
   }
 
   [[nodiscard]] const TumSequence& sequence() const { return sequence_; }
@@ -77,17 +82,6 @@ class TruthSequence {
   }
 
  private:
-  explicit TruthSequence(const std::filesystem::path& folder)
-      : sequence_(TumSequence::open(folder)),
-        detections_(DetectionsFolder::open(
-            folder / "detections", {sequence_.camera().width_px, sequence_.camera().height_px})) {
-    std::ifstream file(folder / "truth" / "objects.json");
-    const nlohmann::json truth = nlohmann::json::parse(file);
-    for (const nlohmann::json& frame : truth.at("frames")) {
-      lines_[frame.at("stamp").get<std::string>()] = frame.at("objects");
-    }
-  }
-
   TumSequence sequence_;
   DetectionsFolder detections_;
   std::map<std::string, nlohmann::json> lines_;

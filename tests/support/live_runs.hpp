@@ -7,7 +7,7 @@
 #include "stillmap/core/error.hpp"
 #include "stillmap/sensor/clock.hpp"
 #include "stillmap/sensor/tum_folder.hpp"
-#include "tests/support/image_files.hpp"
+#include "tests/support/files.hpp"
 #include "tests/support/plane_sequence.hpp"
 #include "tooling/pipeline/run_sequence.hpp"
 

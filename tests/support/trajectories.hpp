@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <filesystem>
 #include <functional>
 
 #include <fmt/core.h>
@@ -25,12 +24,6 @@ inline constexpr std::array<PublishedFigures, 3> kPublished = {{
     {"fr3_walking_static", 714, 0.006532, 0.005918, 0.005452, 0.002765, 683, 0.007779, 0.235584},
     {"fr3_sitting_static", 677, 0.005799, 0.004875, 0.004215, 0.003140, 649, 0.006830, 0.265777},
 }};
-
-/// The folder `trajectories` of the shared test data `data`; empty where it is absent.
-[[nodiscard]] inline std::filesystem::path published_folder(const std::filesystem::path& data) {
-  const std::filesystem::path folder = data / "trajectories";
-  return std::filesystem::is_directory(folder) ? folder : std::filesystem::path();
-}
 
 /// A trajectory of `count` poses from `start_s` on, `step_s` apart; `pose` gives each by its stamp.
 [[nodiscard]] inline Trajectory make_trajectory(

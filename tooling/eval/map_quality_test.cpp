@@ -13,7 +13,7 @@
 
 #include "stillmap/dense/voxel_grid.hpp"
 #include "stillmap/geometry/se3.hpp"
-#include "tests/support/image_files.hpp"
+#include "tests/support/files.hpp"
 
 namespace stillmap {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "stillmap/geometry/se3.hpp"
 #include "stillmap/io/trajectory_io.hpp"
-#include "tests/support/image_files.hpp"
+#include "tests/support/shared_data.hpp"
 #include "tests/support/trajectories.hpp"
 
 namespace stillmap {
@@ -121,8 +121,8 @@ TEST(RelativePoseError, IsNothingWithoutPairs) {
 }
 
 TEST(RelativePoseError, EqualsTheScriptOnPublishedTrajectories) {
-  const std::filesystem::path folder = published_folder(shared_data_folder());
-  if (folder.empty()) GTEST_SKIP() << "no shared test data: set STILLMAP_DATA";
+  STILLMAP_NEED_SHARED_DATA("trajectories");
+  const std::filesystem::path folder = shared_data("trajectories");
   for (const PublishedFigures& expected : kPublished) {
     SCOPED_TRACE(expected.name);
     const std::string name = expected.name;

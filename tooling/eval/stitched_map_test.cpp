@@ -12,7 +12,7 @@
 #include "stillmap/io/ply.hpp"
 #include "stillmap/io/trajectory_io.hpp"
 #include "stillmap/sensor/tum_sequence.hpp"
-#include "tests/support/image_files.hpp"
+#include "tests/support/shared_data.hpp"
 #include "tooling/eval/map_quality.hpp"
 #include "tooling/eval/pose_at.hpp"
 
@@ -22,10 +22,8 @@ namespace {
 class StitchedMap : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = shared_data_folder() / "twin_walking_xyz";
-    if (!std::filesystem::exists(folder_)) {
-      GTEST_SKIP() << folder_ << " is not there: set STILLMAP_DATA to the folder that holds it";
-    }
+    STILLMAP_NEED_SHARED_DATA("twin_walking_xyz");
+    folder_ = shared_data("twin_walking_xyz");
   }
 
   // The ids of all that ever moved, dilated by 2 pixels.

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/support/image_files.hpp"
+#include "tests/support/files.hpp"
 #include "tests/support/room.hpp"
 #include "tooling/export/voxel_walk.hpp"
 

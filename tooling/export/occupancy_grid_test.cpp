@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
-#include "tests/support/image_files.hpp"
+#include "tests/support/files.hpp"
 #include "tests/support/room.hpp"
 
 namespace stillmap {

@@ -10,7 +10,7 @@ namespace {
 
 const char* const kDash = "\xE2\x80\x93";
 
-TEST(DisplayText, units_fit_the_size) {
+TEST(DisplayText, UnitsFitTheSize) {
   EXPECT_EQ(length_text(0.002134), "2.13\u00A0mm");
   EXPECT_EQ(length_text(0.0124), "1.24\u00A0cm");
   EXPECT_EQ(length_text(0.99), "99.0\u00A0cm");
@@ -24,20 +24,20 @@ TEST(DisplayText, units_fit_the_size) {
   EXPECT_EQ(memory_text(1350), "1.35\u00A0GB");
 }
 
-TEST(DisplayText, what_is_not_finite_is_a_dash) {
+TEST(DisplayText, WhatIsNotFiniteIsADash) {
   EXPECT_EQ(length_text(std::numeric_limits<double>::quiet_NaN()), kDash);
   EXPECT_EQ(duration_text(std::numeric_limits<double>::infinity()), kDash);
   EXPECT_EQ(memory_text(std::numeric_limits<double>::quiet_NaN()), kDash);
 }
 
-TEST(DisplayText, counts_have_groups_of_three) {
+TEST(DisplayText, CountsHaveGroupsOfThree) {
   EXPECT_EQ(count_text(0), "0");
   EXPECT_EQ(count_text(999), "999");
   EXPECT_EQ(count_text(1000), "1,000");
   EXPECT_EQ(count_text(1234567), "1,234,567");
 }
 
-TEST(DisplayText, only_all_is_a_hundred_percent) {
+TEST(DisplayText, OnlyAllIsAHundredPercent) {
   EXPECT_EQ(share_text(360, 360), "100\u00A0%");
   EXPECT_EQ(share_text(9999, 10000), "99.9\u00A0%");
   EXPECT_EQ(share_text(1, 3), "33.3\u00A0%");

@@ -19,7 +19,7 @@ bool greenish(const cv::Vec3b& c) {
   return c[1] > 150 && c[1] > c[0] + 60 && c[1] > c[2] + 60;
 }
 
-TEST(DrawFrame, rings_in_their_colours_on_a_copy) {
+TEST(DrawFrame, RingsInTheirColoursOnACopy) {
   SampleFrame frame = gray_frame(100, 80);
   frame.features = {{{30, 40}, SampleVerdict::kTracked}, {{70, 20}, SampleVerdict::kUntracked}};
   const ColorImage drawn = draw_frame(frame, 640);
@@ -32,7 +32,7 @@ TEST(DrawFrame, rings_in_their_colours_on_a_copy) {
   EXPECT_EQ(frame.image.mat(40, 33), cv::Vec3b(60, 60, 60));
 }
 
-TEST(DrawFrame, wide_images_become_smaller_and_features_move_along) {
+TEST(DrawFrame, WideImagesBecomeSmallerAndFeaturesMoveAlong) {
   SampleFrame frame = gray_frame(400, 200);
   frame.features = {{{200, 100}, SampleVerdict::kTracked}};
   const ColorImage drawn = draw_frame(frame, 100);
@@ -40,7 +40,7 @@ TEST(DrawFrame, wide_images_become_smaller_and_features_move_along) {
   EXPECT_TRUE(greenish(drawn.mat(25, 53)));
 }
 
-TEST(DrawFrame, masks_are_outlined_and_tinted) {
+TEST(DrawFrame, MasksAreOutlinedAndTinted) {
   SampleFrame frame = gray_frame(100, 80);
   const auto mask_of = [](const cv::Rect& area) {
     cv::Mat1b mask(80, 100, std::uint8_t{0});
@@ -61,7 +61,7 @@ TEST(DrawFrame, masks_are_outlined_and_tinted) {
   EXPECT_EQ(drawn(60, 60), cv::Vec3b(60, 60, 60));
 }
 
-TEST(DrawFrame, masks_become_smaller_with_the_image) {
+TEST(DrawFrame, MasksBecomeSmallerWithTheImage) {
   SampleFrame frame = gray_frame(400, 200);
   frame.jumps = cv::Mat1b(200, 400, std::uint8_t{0});
   frame.jumps(cv::Rect(0, 0, 200, 200)).setTo(1);
@@ -70,13 +70,13 @@ TEST(DrawFrame, masks_become_smaller_with_the_image) {
   EXPECT_EQ(drawn(25, 52), cv::Vec3b(60, 60, 60));
 }
 
-TEST(VerdictStyles, has_each_fate_once) {
+TEST(VerdictStyles, HasEachFateOnce) {
   for (const SampleVerdict verdict : {SampleVerdict::kUntracked, SampleVerdict::kTracked}) {
     EXPECT_EQ(std::ranges::count(verdict_styles(), verdict, &VerdictStyle::verdict), 1);
   }
 }
 
-TEST(DrawFrame, hostile_places_and_empty_images) {
+TEST(DrawFrame, HostilePlacesAndEmptyImages) {
   SampleFrame frame = gray_frame(50, 50);
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   for (const Eigen::Vector2f& at : {Eigen::Vector2f(kNan, 3), {1e30F, 3}, {-1, 3}, {3, 50}}) {

@@ -34,7 +34,7 @@ Rgb pixel(const ColorImage& image, int x, int y) {
   return {c[0], c[1], c[2]};
 }
 
-TEST(LookAt, axes_of_the_camera) {
+TEST(LookAt, AxesOfTheCamera) {
   const Eigen::Isometry3d T = look_at({1, 2, 3}, {1, 2, 8}, {0, 1, 0});
   EXPECT_TRUE((T * Eigen::Vector3d(1, 2, 3)).isZero(1e-12));
   EXPECT_TRUE((T * Eigen::Vector3d(2, 2, 3)).isApprox(Eigen::Vector3d(1, 0, 0)));
@@ -45,7 +45,7 @@ TEST(LookAt, axes_of_the_camera) {
   EXPECT_NEAR(from_above.linear().determinant(), 1, 1e-12);
 }
 
-TEST(RenderPoints, points_fall_where_they_project_by_hand) {
+TEST(RenderPoints, PointsFallWhereTheyProjectByHand) {
   PointCloud cloud;
   cloud.positions = {{0.2F, -0.1F, 2.0F}, {-0.59F, 0.41F, 1.0F}};
   cloud.colors = {kRed, kBlue};
@@ -55,7 +55,7 @@ TEST(RenderPoints, points_fall_where_they_project_by_hand) {
   EXPECT_EQ(pixel(image, 46, 27), (Rgb{255, 255, 255}));
 }
 
-TEST(RenderPoints, orthographic_points_do_not_shrink_with_distance) {
+TEST(RenderPoints, OrthographicPointsDoNotShrinkWithDistance) {
   PointCloud cloud;
   cloud.positions = {{0.25F, 0.25F, 2.0F}, {-0.35F, 0.25F, 70.0F}};
   cloud.colors = {kRed, kBlue};
@@ -72,7 +72,7 @@ TEST(RenderPoints, orthographic_points_do_not_shrink_with_distance) {
 }
 
 // The nearest point of each pixel, straight from the definition, one pixel at a time.
-TEST(RenderPoints, agrees_with_brute_force) {
+TEST(RenderPoints, AgreesWithBruteForce) {
   std::mt19937 rng(7);
   const auto uniform = [&rng](double low, double high) {
     return low + (high - low) * draw_index(rng, 1U << 30U) / (1U << 30U);
@@ -103,7 +103,7 @@ TEST(RenderPoints, agrees_with_brute_force) {
   }
 }
 
-TEST(RenderPoints, of_equally_near_points_the_first_wins_and_hostile_ones_are_left_out) {
+TEST(RenderPoints, OfEquallyNearPointsTheFirstWinsAndHostileOnesAreLeftOut) {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   PointCloud cloud;
   cloud.positions = {{0, 0, 1}, {0, 0, 1}, {kNan, 0, 1}, {0, 0, 0}, {0, 0, -1}, {1e30F, 0, 1e-1F}};
@@ -113,7 +113,7 @@ TEST(RenderPoints, of_equally_near_points_the_first_wins_and_hostile_ones_are_le
   EXPECT_EQ(cv::countNonZero(image.mat.reshape(1) != 255), 3);  // the channels of that one pixel
 }
 
-TEST(RenderPoints, shading_darkens_what_lies_just_behind_an_edge_and_nothing_else) {
+TEST(RenderPoints, ShadingDarkensWhatLiesJustBehindAnEdgeAndNothingElse) {
   PointCloud cloud;
   for (int y = -20; y <= 20; ++y) {
     for (int x = -20; x <= 20; ++x) {
@@ -130,13 +130,13 @@ TEST(RenderPoints, shading_darkens_what_lies_just_behind_an_edge_and_nothing_els
   EXPECT_LT(pixel(image, 40, 30)[0], 170);                // behind, at the edge
 }
 
-TEST(RenderPoints, of_an_empty_cloud_is_background) {
+TEST(RenderPoints, OfAnEmptyCloudIsBackground) {
   const ColorImage image = render_points(PointCloud{}, plain_view());
   EXPECT_EQ(image.mat.size(), cv::Size(80, 60));
   EXPECT_EQ(cv::countNonZero(image.mat.reshape(1) != 255), 0);
 }
 
-TEST(DrawPath, goes_through_its_points_on_a_copy) {
+TEST(DrawPath, GoesThroughItsPointsOnACopy) {
   const ColorImage blank = render_points(PointCloud{}, plain_view());
   const std::vector<Eigen::Vector3d> path = {{-0.5, 0, 1}, {0.5, 0, 1}, {0, 0, -1}, {1e9, 0, 1}};
   const ColorImage drawn = draw_path(blank, plain_view(), path, kRed);

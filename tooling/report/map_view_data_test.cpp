@@ -46,7 +46,7 @@ PointCloud sheet(int count) {
   return cloud;
 }
 
-TEST(EvenlySpread, exactly_the_limit_without_repetition) {
+TEST(EvenlySpread, ExactlyTheLimitWithoutRepetition) {
   EXPECT_THAT(evenly_spread(3, 5), ElementsAre(0, 1, 2));
   EXPECT_THAT(evenly_spread(10, 4), ElementsAre(0, 2, 5, 7));
   EXPECT_TRUE(evenly_spread(0, 4).empty());
@@ -57,7 +57,7 @@ TEST(EvenlySpread, exactly_the_limit_without_repetition) {
   for (std::size_t i = 1; i < many.size(); ++i) ASSERT_LT(many[i - 1], many[i]);
 }
 
-TEST(ContinuousParts, are_cut_at_gaps) {
+TEST(ContinuousParts, AreCutAtGaps) {
   const Trajectory poses = {
       pose_at(1.0, {0, 0, 0}), pose_at(1.5, {1, 0, 0}), pose_at(2.1, {2, 0, 0})};
   const std::vector<std::vector<Eigen::Vector3d>> parts = continuous_parts(poses);
@@ -67,7 +67,7 @@ TEST(ContinuousParts, are_cut_at_gaps) {
   EXPECT_TRUE(continuous_parts({}).empty());
 }
 
-TEST(MapViewJson, decodes_to_the_points_within_half_a_step) {
+TEST(MapViewJson, DecodesToThePointsWithinHalfAStep) {
   const PointCloud cloud = sheet(5000);
   const SceneFrame scene = scene_frame(cloud, {});
   const json j = json::parse(map_view_json(cloud, scene, {}, {}, 1000));
@@ -89,13 +89,13 @@ TEST(MapViewJson, decodes_to_the_points_within_half_a_step) {
   }
 }
 
-TEST(MapViewJson, never_more_points_than_the_limit) {
+TEST(MapViewJson, NeverMorePointsThanTheLimit) {
   const PointCloud cloud = sheet(200'000);
   const json j = json::parse(map_view_json(cloud, scene_frame(cloud, {}), {}, {}));
   EXPECT_EQ(j.at("points"), 150'000);
 }
 
-TEST(MapViewJson, paths_frusta_and_the_first_view) {
+TEST(MapViewJson, PathsFrustaAndTheFirstView) {
   const PointCloud cloud = sheet(100);
   const Trajectory cameras = {
       pose_at(0, {0, 0, 0}), pose_at(0.1, {0.5, 0, 0}), pose_at(9, {1, 0, 0})};
@@ -119,7 +119,7 @@ TEST(MapViewJson, paths_frusta_and_the_first_view) {
   EXPECT_NEAR(j.at("head_y"), scene.cameras.center().y() - 0.4, 1e-9);
 }
 
-TEST(MapViewJson, of_nothing) {
+TEST(MapViewJson, OfNothing) {
   const PointCloud cloud;
   const json j = json::parse(map_view_json(cloud, scene_frame(cloud, {}), {}, {}));
   EXPECT_EQ(j.at("points"), 0);

@@ -67,7 +67,7 @@ ColorImage picture(MapSide side) {
   return render_points(cut, view);
 }
 
-TEST(CutOpen, takes_the_ceiling_and_strays_away) {
+TEST(CutOpen, TakesTheCeilingAndStraysAway) {
   PointCloud map = room();
   map.positions.emplace_back(500.0F, 0.0F, 0.0F);
   map.positions.emplace_back(std::numeric_limits<float>::quiet_NaN(), 0.0F, 0.0F);
@@ -82,7 +82,7 @@ TEST(CutOpen, takes_the_ceiling_and_strays_away) {
   }
 }
 
-TEST(CutOpen, goes_by_the_floor_where_there_are_no_cameras) {
+TEST(CutOpen, GoesByTheFloorWhereThereAreNoCameras) {
   const PointCloud map = room();
   const PointCloud cut = cut_open(map, scene_frame(map, {}));
   ASSERT_GT(cut.size(), 1000U);
@@ -91,7 +91,7 @@ TEST(CutOpen, goes_by_the_floor_where_there_are_no_cameras) {
   EXPECT_NEAR(highest, 1.2 - 1.9, 0.05);
 }
 
-TEST(ViewFrom, front_has_the_back_wall_up_and_the_left_wall_left) {
+TEST(ViewFrom, FrontHasTheBackWallUpAndTheLeftWallLeft) {
   const ColorImage image = picture(MapSide::kFront);
   EXPECT_GT(patch(image, kBackWall).pixels, 1000);
   EXPECT_LT(patch(image, kBackWall).center.y(), patch(image, kFloor).center.y());
@@ -99,13 +99,13 @@ TEST(ViewFrom, front_has_the_back_wall_up_and_the_left_wall_left) {
   EXPECT_LT(patch(image, kLeftWall).center.x(), 80);
 }
 
-TEST(ViewFrom, left_has_the_back_wall_left) {
+TEST(ViewFrom, LeftHasTheBackWallLeft) {
   const ColorImage image = picture(MapSide::kLeft);
   EXPECT_GT(patch(image, kBackWall).pixels, 500);
   EXPECT_LT(patch(image, kBackWall).center.x(), patch(image, kFloor).center.x());
 }
 
-TEST(ViewFrom, top_is_a_plan) {
+TEST(ViewFrom, TopIsAPlan) {
   const ColorImage image = picture(MapSide::kTop);
   // 4 m by 3 m fill 320 by 240 pixels to 95 %: 76 pixels a metre; the floor is all but walls.
   EXPECT_NEAR(patch(image, kFloor).pixels, 0.95 * 0.95 * 320 * 240, 0.06 * 320 * 240);
@@ -113,7 +113,7 @@ TEST(ViewFrom, top_is_a_plan) {
   EXPECT_LT(patch(image, kLeftWall).center.x(), 15);
 }
 
-TEST(ViewFrom, fills_the_picture_from_all_sides) {
+TEST(ViewFrom, FillsThePictureFromAllSides) {
   for (const MapSide side : {MapSide::kFront, MapSide::kLeft, MapSide::kTop}) {
     const PointCloud map = room();
     const SceneFrame scene = scene_of(map);
@@ -129,7 +129,7 @@ TEST(ViewFrom, fills_the_picture_from_all_sides) {
   }
 }
 
-TEST(RenderSmooth, is_the_same_picture_without_steps) {
+TEST(RenderSmooth, IsTheSamePictureWithoutSteps) {
   const PointCloud map = room();
   const View view = view_from(MapSide::kTop, scene_of(map), map, {320, 240});
   const cv::Mat3b plain = render_points(map, view).mat, smooth = render_smooth(map, view).mat;
@@ -148,7 +148,7 @@ TEST(RenderSmooth, is_the_same_picture_without_steps) {
   EXPECT_NEAR(render_smooth(point, near).mat(16, 16)[0], 255 * 3 / 4, 1);
 }
 
-TEST(TilePictures, lie_in_rows_with_captions_over_them) {
+TEST(TilePictures, LieInRowsWithCaptionsOverThem) {
   const auto plain = [](std::uint8_t level) {
     return ColorImage(cv::Mat3b(20, 30, cv::Vec3b(level, level, level)));
   };
@@ -170,7 +170,7 @@ TEST(TilePictures, lie_in_rows_with_captions_over_them) {
   EXPECT_TRUE(std::any_of(head.begin(), head.end(), [](const cv::Vec3b& c) { return c[0] < 128; }));
 }
 
-TEST(ViewFrom, of_an_empty_map_is_a_view) {
+TEST(ViewFrom, OfAnEmptyMapIsAView) {
   const View view = view_from(MapSide::kFront, scene_frame({}, {}), {}, {320, 240});
   EXPECT_EQ(render_points({}, view).mat.size(), cv::Size(320, 240));
 }

@@ -127,7 +127,7 @@ std::string first_fault(std::string_view page) {
   return open.empty() ? "" : "not closed: " + open.back();
 }
 
-TEST(FirstFault, finds_faults) {
+TEST(FirstFault, FindsFaults) {
   EXPECT_EQ(first_fault("<!DOCTYPE html><p class=\"a > b\">x<br/><img src=\"y\"></p>"), "");
   EXPECT_EQ(first_fault("<script>if (a < b) c();</script>"), "");
   EXPECT_EQ(first_fault("<p><b></p></b>"), "unexpected </p>");
@@ -135,7 +135,7 @@ TEST(FirstFault, finds_faults) {
   EXPECT_NE(first_fault("<p <b>"), "");
 }
 
-TEST(ReportHtml, shows_all_that_is_known) {
+TEST(ReportHtml, ShowsAllThatIsKnown) {
   const PointCloud map = wall();
   const std::string page = report_html(full_report(map));
   EXPECT_EQ(first_fault(page), "");
@@ -170,7 +170,7 @@ TEST(ReportHtml, shows_all_that_is_known) {
   }
 }
 
-TEST(ReportHtml, fetches_nothing) {
+TEST(ReportHtml, FetchesNothing) {
   const PointCloud map = wall();
   const std::string page = report_html(full_report(map));
   for (const char* const part :
@@ -180,12 +180,12 @@ TEST(ReportHtml, fetches_nothing) {
   EXPECT_THAT(page, HasSubstr("default-src 'none'"));
 }
 
-TEST(ReportHtml, is_the_same_each_time) {
+TEST(ReportHtml, IsTheSameEachTime) {
   const PointCloud map = wall();
   EXPECT_EQ(report_html(full_report(map)), report_html(full_report(map)));
 }
 
-TEST(ReportHtml, every_text_is_escaped) {
+TEST(ReportHtml, EveryTextIsEscaped) {
   const std::string evil = "\"'><script>alert(1)</script>&{{css}}\xff";
   const PointCloud map = wall();
   RunReport report = full_report(map);
@@ -209,7 +209,7 @@ TEST(ReportHtml, every_text_is_escaped) {
   EXPECT_THAT(page, HasSubstr("&lt;script&gt;alert(1)&lt;/script&gt;&amp;{{css}}"));
 }
 
-TEST(ReportHtml, of_nothing_says_so_in_each_section) {
+TEST(ReportHtml, OfNothingSaysSoInEachSection) {
   const std::string page = report_html(RunReport{});
   EXPECT_EQ(first_fault(page), "");
   for (const char* const part : {"Unnamed sequence",
@@ -228,7 +228,7 @@ TEST(ReportHtml, of_nothing_says_so_in_each_section) {
   EXPECT_THAT(page, Not(HasSubstr("warning</summary>")));
 }
 
-TEST(ReportHtml, says_how_a_live_run_kept_up) {
+TEST(ReportHtml, SaysHowALiveRunKeptUp) {
   RunReport report;
   EXPECT_THAT(report_html(report), Not(HasSubstr("Live:")));
   report.live = LiveReport{1.0, 7, 93, {1, 2, 3, 4, 9}, {10, 20, 30}};
@@ -239,7 +239,7 @@ TEST(ReportHtml, says_how_a_live_run_kept_up) {
   EXPECT_THAT(report_html(report), Not(HasSubstr("after it came")));
 }
 
-TEST(ReportHtml, of_a_run_that_tracked_nothing) {
+TEST(ReportHtml, OfARunThatTrackedNothing) {
   RunReport report;
   report.frames_total = 5;
   const PointCloud empty;
@@ -256,7 +256,7 @@ TEST(ReportHtml, of_a_run_that_tracked_nothing) {
   EXPECT_THAT(page, HasSubstr("fewer than three poses"));
 }
 
-TEST(ReportHtml, says_how_good_the_map_is_where_truth_is_known) {
+TEST(ReportHtml, SaysHowGoodTheMapIsWhereTruthIsKnown) {
   const PointCloud map = wall();
   RunReport report = full_report(map);
   EXPECT_THAT(report_html(report), Not(HasSubstr("Against the true surfaces")));
@@ -276,7 +276,7 @@ TEST(ReportHtml, says_how_good_the_map_is_where_truth_is_known) {
   }
 }
 
-TEST(ReportHtml, of_one_pose_without_ground_truth) {
+TEST(ReportHtml, OfOnePoseWithoutGroundTruth) {
   RunReport report;
   report.frames_total = report.frames_tracked = 1;
   report.estimate = half_circle(1);
@@ -294,7 +294,7 @@ TEST(ReportHtml, of_one_pose_without_ground_truth) {
   EXPECT_THAT(page, Not(HasSubstr(">nan")));
 }
 
-TEST(ReportHtml, says_why_there_are_no_objects) {
+TEST(ReportHtml, SaysWhyThereAreNoObjects) {
   RunReport report;
   report.dynamics_mode = "full";
   EXPECT_THAT(report_html(report), HasSubstr("No network looked for objects"));
@@ -307,7 +307,7 @@ TEST(ReportHtml, says_why_there_are_no_objects) {
   EXPECT_EQ(first_fault(page), "");
 }
 
-TEST(ReportHtml, long_lists_are_cut) {
+TEST(ReportHtml, LongListsAreCut) {
   RunReport report;
   report.warnings.assign(1000, "again");
   EXPECT_THAT(report_html(report), HasSubstr("and 800 more"));

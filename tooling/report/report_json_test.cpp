@@ -35,7 +35,7 @@ RunReport small_report(const PointCloud& map) {
   return report;
 }
 
-TEST(ReportJson, known_figures) {
+TEST(ReportJson, KnownFigures) {
   PointCloud map;
   map.positions = {{1, 2, 3}, {-1, 5, 0}};
   map.colors.resize(2);
@@ -59,7 +59,7 @@ TEST(ReportJson, known_figures) {
   EXPECT_EQ(j.at("warnings"), json{"depth is sparse"});
 }
 
-TEST(ReportJson, gaps_in_tracking) {
+TEST(ReportJson, GapsInTracking) {
   RunReport report;
   report.lost = {{2, "2.0"}, {3, "3.0"}, {6, "6.0"}};
   report.estimate = {{{1, "1.0"}, Eigen::Isometry3d::Identity()},
@@ -81,7 +81,7 @@ TEST(ReportJson, gaps_in_tracking) {
   EXPECT_EQ(json::parse(report_json(RunReport{})).at("tracking").at("gaps"), json::array());
 }
 
-TEST(ReportJson, times) {
+TEST(ReportJson, Times) {
   const PointCloud map;
   const json time = json::parse(report_json(small_report(map))).at("time");
   EXPECT_EQ(time.at("frame_ms"), (json{{"mean", 40}, {"median", 25}, {"p95", 100}, {"max", 100}}));
@@ -92,7 +92,7 @@ TEST(ReportJson, times) {
             (json{{"mean", 5}, {"median", 5}, {"p95", 5}, {"max", 5}}));
 }
 
-TEST(ReportJson, stages_of_one_name_are_taken_together) {
+TEST(ReportJson, StagesOfOneNameAreTakenTogether) {
   RunReport report;
   report.stages.emplace_back("match", std::vector<double>{1});
   report.stages.emplace_back("match", std::vector<double>{3});
@@ -100,7 +100,7 @@ TEST(ReportJson, stages_of_one_name_are_taken_together) {
   EXPECT_EQ(stages, (json{{"match", {{"mean", 2}, {"median", 2}, {"p95", 3}, {"max", 3}}}}));
 }
 
-TEST(ReportJson, errors_against_ground_truth) {
+TEST(ReportJson, ErrorsAgainstGroundTruth) {
   RunReport report;
   report.ate =
       AteResult{.translation_m = {6, 5, 4, 3, 2, 1}, .T_groundtruth_estimate = {}, .pairs = {}};
@@ -126,7 +126,7 @@ TEST(ReportJson, errors_against_ground_truth) {
   EXPECT_EQ(j.at("rpe").at("rot_deg").at("max"), 3);
 }
 
-TEST(ReportJson, unknown_figures_are_null) {
+TEST(ReportJson, UnknownFiguresAreNull) {
   const json j = json::parse(report_json(RunReport{}));
   for (const char* path : {"/frames/ratio",
                            "/time/wall_s",
@@ -169,7 +169,7 @@ ObjectSummary object_of(const char* class_name, std::size_t frames, std::size_t 
   return object;
 }
 
-TEST(ReportJson, counts_objects_by_class) {
+TEST(ReportJson, CountsObjectsByClass) {
   RunReport report;
   report.dynamics_mode = "full";
   report.objects = {
@@ -186,7 +186,7 @@ TEST(ReportJson, counts_objects_by_class) {
                   {"classes", {{"chair", chairs}, {"person", people}}}}));
 }
 
-TEST(ReportJson, an_empty_map_has_no_bounds) {
+TEST(ReportJson, AnEmptyMapHasNoBounds) {
   RunReport report;
   const PointCloud map;
   report.map = &map;
@@ -195,7 +195,7 @@ TEST(ReportJson, an_empty_map_has_no_bounds) {
   EXPECT_TRUE(j.at("bounds_min").is_null());
 }
 
-TEST(ReportJson, says_how_good_the_map_is) {
+TEST(ReportJson, SaysHowGoodTheMapIs) {
   const PointCloud map;
   RunReport report;
   EXPECT_TRUE(json::parse(report_json(report)).at("map").at("sa").is_null());
@@ -217,7 +217,7 @@ TEST(ReportJson, says_how_good_the_map_is) {
   EXPECT_TRUE(j.at("map_truth_poses").at("ghost_ratio").is_null());
 }
 
-TEST(ReportJson, hostile_values_stay_json) {
+TEST(ReportJson, HostileValuesStayJson) {
   RunReport report;
   report.sequence = "a\"\\\n\xff</script>";
   report.wall_s = std::numeric_limits<double>::quiet_NaN();

@@ -29,7 +29,7 @@ Trajectory level_camera() {
   return {StampedPose{.stamp = {0, "0"}, .T_world_camera = Eigen::Isometry3d::Identity()}};
 }
 
-TEST(SceneFrame, finds_the_floor_of_a_tilted_world) {
+TEST(SceneFrame, FindsTheFloorOfATiltedWorld) {
   const Eigen::Matrix3d R_world_level =
       Eigen::AngleAxisd(0.5, Eigen::Vector3d(1, 0, 0.3).normalized()).toRotationMatrix();
   PointCloud cloud = room();
@@ -43,7 +43,7 @@ TEST(SceneFrame, finds_the_floor_of_a_tilted_world) {
   EXPECT_NEAR((scene.R_level_world * Eigen::Vector3d::UnitZ()).x(), 0, 1e-9);  // cameras' gaze
 }
 
-TEST(SceneFrame, takes_the_direction_that_is_given) {
+TEST(SceneFrame, TakesTheDirectionThatIsGiven) {
   for (const Eigen::Vector3d& up : {Eigen::Vector3d(0, 0, 2), Eigen::Vector3d(-1, 0, 0)}) {
     const SceneFrame scene = scene_frame(room(), {}, up);
     EXPECT_TRUE((scene.R_level_world * up.normalized()).isApprox(-Eigen::Vector3d::UnitY()));
@@ -51,7 +51,7 @@ TEST(SceneFrame, takes_the_direction_that_is_given) {
   }
 }
 
-TEST(SceneFrame, box_and_spacing_of_a_level_room) {
+TEST(SceneFrame, BoxAndSpacingOfALevelRoom) {
   const SceneFrame scene = scene_frame(room(), level_camera());
   EXPECT_LT((scene.box.min() - Eigen::Vector3d(-2, -1.25, 1)).norm(), 0.2);
   EXPECT_LT((scene.box.max() - Eigen::Vector3d(2, 1.2, 4)).norm(), 0.2);
@@ -59,7 +59,7 @@ TEST(SceneFrame, box_and_spacing_of_a_level_room) {
   EXPECT_LT(scene.spacing_m, 0.07);
 }
 
-TEST(SceneFrame, strays_do_not_count) {
+TEST(SceneFrame, StraysDoNotCount) {
   PointCloud cloud = room();
   const std::size_t count = cloud.size();
   cloud.positions.emplace_back(1e6F, 0, 0);
@@ -70,7 +70,7 @@ TEST(SceneFrame, strays_do_not_count) {
   EXPECT_EQ(points_in_scene(cloud, scene).size(), count);
 }
 
-TEST(SceneFrame, views_show_the_room) {
+TEST(SceneFrame, ViewsShowTheRoom) {
   const PointCloud cloud = room();
   const SceneFrame scene = scene_frame(cloud, level_camera());
   const View above = view_from_above(scene, 300, 200);
@@ -99,7 +99,7 @@ TEST(SceneFrame, views_show_the_room) {
   EXPECT_LT(project_point(along, {0, -1, 3})->y(), project_point(along, {0, 1, 3})->y());
 }
 
-TEST(SceneFrame, of_nothing_or_one_point_still_gives_views) {
+TEST(SceneFrame, OfNothingOrOnePointStillGivesViews) {
   PointCloud cloud;
   const SceneFrame nothing = scene_frame(cloud, {});
   EXPECT_TRUE(nothing.box.isEmpty());

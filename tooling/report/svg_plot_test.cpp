@@ -21,14 +21,14 @@ std::size_t count(const std::string& text, const std::string& part) {
   return n;
 }
 
-TEST(NiceTicks, hand_worked) {
+TEST(NiceTicks, HandWorked) {
   EXPECT_THAT(nice_ticks(0, 10, 5), ElementsAre(0, 2, 4, 6, 8, 10));
   EXPECT_THAT(nice_ticks(-0.9, 1.1, 4), ElementsAre(-0.5, 0, 0.5, 1));
   EXPECT_THAT(nice_ticks(1305, 1349, 4), ElementsAre(1310, 1320, 1330, 1340));
   EXPECT_EQ(nice_ticks(0, 0.3, 3).size(), 4U);  // 0.3 is the third step, whatever rounding says
 }
 
-TEST(NiceTicks, labels_have_the_decimals_they_need) {
+TEST(NiceTicks, LabelsHaveTheDecimalsTheyNeed) {
   EXPECT_THAT(tick_labels({0, 0.5, 1}), ElementsAre("0.0", "0.5", "1.0"));
   EXPECT_THAT(tick_labels(nice_ticks(-0.1, 0.1, 4)),
               ElementsAre("-0.10", "-0.05", "0.00", "0.05", "0.10"));
@@ -36,7 +36,7 @@ TEST(NiceTicks, labels_have_the_decimals_they_need) {
   EXPECT_THAT(tick_labels({0, 1e9}), ElementsAre("0", "1e+09"));
 }
 
-TEST(PlotScale, corners_of_the_data_are_corners_of_the_box) {
+TEST(PlotScale, CornersOfTheDataAreCornersOfTheBox) {
   Plot plot;
   plot.width_px = 478;
   plot.height_px = 180;
@@ -51,7 +51,7 @@ TEST(PlotScale, corners_of_the_data_are_corners_of_the_box) {
   EXPECT_NEAR(scale.to_px({20, 106}).y(), 34, 1e-9);  // 6 % of air above the largest
 }
 
-TEST(PlotScale, equal_axes_have_equal_units) {
+TEST(PlotScale, EqualAxesHaveEqualUnits) {
   Plot plot;
   plot.width_px = 478;
   plot.height_px = 180;
@@ -67,7 +67,7 @@ TEST(PlotScale, equal_axes_have_equal_units) {
   EXPECT_NEAR(middle.y() - scale.to_px({0, 2}).y(), px_per_unit, 1e-9);
 }
 
-TEST(PlotScale, one_point_or_none_still_has_a_scale) {
+TEST(PlotScale, OnePointOrNoneStillHasAScale) {
   Plot plot;
   EXPECT_LT(plot_scale(plot).x.low, plot_scale(plot).x.high);
   plot.series.push_back({.name = "a", .points = {{3, -4}}});
@@ -78,7 +78,7 @@ TEST(PlotScale, one_point_or_none_still_has_a_scale) {
   EXPECT_GT(scale.y.high, -4);
 }
 
-TEST(PlotSvg, lines_go_through_the_scaled_points_and_break_where_there_is_none) {
+TEST(PlotSvg, LinesGoThroughTheScaledPointsAndBreakWhereThereIsNone) {
   Plot plot;
   plot.width_px = 478;
   plot.height_px = 180;
@@ -89,7 +89,7 @@ TEST(PlotSvg, lines_go_through_the_scaled_points_and_break_where_there_is_none) 
   EXPECT_THAT(svg, HasSubstr("d=\"M62.0 134.0L262.0 39.7M462.0 134.0h0.1\""));
 }
 
-TEST(PlotSvg, dots_dashes_and_texts) {
+TEST(PlotSvg, DotsDashesAndTexts) {
   Plot plot;
   plot.title = "a < b";
   plot.x_label = "<x>";
@@ -105,14 +105,14 @@ TEST(PlotSvg, dots_dashes_and_texts) {
   EXPECT_THAT(svg, Not(HasSubstr("nothing to show")));
 }
 
-TEST(PlotSvg, without_points_says_so) {
+TEST(PlotSvg, WithoutPointsSaysSo) {
   Plot plot;
   plot.series.push_back({.name = "a", .points = {{kNan, 0}, {1e300, 0}}});
   EXPECT_THAT(plot_svg(plot), HasSubstr("nothing to show"));
   EXPECT_THAT(plot_svg(plot), Not(HasSubstr("nan")));
 }
 
-TEST(PlotSvg, a_dense_line_is_thinned_but_keeps_its_ends) {
+TEST(PlotSvg, ADenseLineIsThinnedButKeepsItsEnds) {
   Plot plot;
   plot.series.push_back({.name = "", .points = {}});
   for (int i = 0; i <= 100000; ++i) plot.series[0].points.emplace_back(i * 1e-3, 1.0);

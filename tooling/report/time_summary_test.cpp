@@ -10,14 +10,14 @@
 namespace stillmap {
 namespace {
 
-TEST(TimeSummary, of_nothing_is_nothing) {
+TEST(TimeSummary, OfNothingIsNothing) {
   EXPECT_FALSE(summarize_times({}).has_value());
   const std::vector<double> not_finite{std::numeric_limits<double>::quiet_NaN(),
                                        std::numeric_limits<double>::infinity()};
   EXPECT_FALSE(summarize_times(not_finite).has_value());
 }
 
-TEST(TimeSummary, of_one_value_is_that_value) {
+TEST(TimeSummary, OfOneValueIsThatValue) {
   const std::vector<double> one{7.5};
   const TimeSummary summary = summarize_times(one).value();
   EXPECT_EQ(summary.mean, 7.5);
@@ -26,7 +26,7 @@ TEST(TimeSummary, of_one_value_is_that_value) {
   EXPECT_EQ(summary.max, 7.5);
 }
 
-TEST(TimeSummary, hand_worked) {
+TEST(TimeSummary, HandWorked) {
   const std::vector<double> values{40, 10, 30, 20};
   const TimeSummary summary = summarize_times(values).value();
   EXPECT_DOUBLE_EQ(summary.mean, 25);
@@ -35,7 +35,7 @@ TEST(TimeSummary, hand_worked) {
   EXPECT_DOUBLE_EQ(summary.max, 40);
 }
 
-TEST(TimeSummary, p95_is_the_nearest_rank) {
+TEST(TimeSummary, P95IsTheNearestRank) {
   std::vector<double> values(100);
   std::iota(values.rbegin(), values.rend(), 1.0);
   EXPECT_EQ(summarize_times(values)->p95, 95);  // rank ceil(0.95 * 100) = 95 of 1..100

@@ -16,7 +16,8 @@
 #include "stillmap/io/image_io.hpp"
 #include "stillmap/perception/detections/class_names.hpp"
 #include "stillmap/sensor/tum_sequence.hpp"
-#include "tests/support/image_files.hpp"
+#include "tests/support/files.hpp"
+#include "tests/support/shared_data.hpp"
 
 namespace stillmap {
 namespace {
@@ -237,12 +238,12 @@ TEST(DetectionsWriter, SaysWhenItCannotWrite) {
 
 // Every frame of the given sequences, against the pixels that the lines promise.
 TEST(DetectionsFolder, ReadsThoseOfARealNetwork) {
-  const fs::path data = shared_data_folder();
-  if (data.empty()) GTEST_SKIP() << "the shared test data is absent (set STILLMAP_DATA)";
   for (const char* name : {"twin_walking_xyz", "fr1_xyz_walkers"}) {
-    const TumSequence sequence = TumSequence::open(data / name);
-    const DetectionsFolder read = DetectionsFolder::open(
-        data / name / "detections", {sequence.camera().width_px, sequence.camera().height_px});
+    STILLMAP_NEED_SHARED_DATA(name);
+    const TumSequence sequence = TumSequence::open(shared_data(name));
+    const DetectionsFolder read =
+        DetectionsFolder::open(shared_data(name) / "detections",
+                               {sequence.camera().width_px, sequence.camera().height_px});
     EXPECT_GE(read.size(), sequence.size());
     std::size_t objects = 0, with_pixels = 0;
     for (std::uint32_t i = 0; i < sequence.size(); ++i) {

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "tests/support/image_files.hpp"
+#include "tests/support/files.hpp"
 
 namespace stillmap {
 namespace {

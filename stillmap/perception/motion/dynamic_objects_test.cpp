@@ -14,7 +14,7 @@
 #include "stillmap/io/trajectory_io.hpp"
 #include "stillmap/perception/objects/object_tracker.hpp"
 #include "tests/support/dynamics_frames.hpp"
-#include "tests/support/image_files.hpp"
+#include "tests/support/shared_data.hpp"
 
 namespace stillmap {
 namespace {
@@ -205,12 +205,12 @@ void print(const char* what, const Result& result) {
 
 TEST(DynamicObjects, CoverWhatMovesOnTruth) {
   for (const char* name : {"twin_walking_xyz", "fr1_xyz_walkers"}) {
-    const std::unique_ptr<TruthSequence> data = TruthSequence::open(shared_data_folder() / name);
-    if (!data) GTEST_SKIP() << "the shared test data is absent (set STILLMAP_DATA)";
+    STILLMAP_NEED_SHARED_DATA(name);
+    const TruthSequence data(shared_data(name));
     SCOPED_TRACE(name);
-    const Result mask = run_on(*data, dynamics_mode("mask"));
-    const Result paper = run_on(*data, dynamics_mode("paper"));
-    const Result full = run_on(*data, dynamics_mode("full"));
+    const Result mask = run_on(data, dynamics_mode("mask"));
+    const Result paper = run_on(data, dynamics_mode("paper"));
+    const Result full = run_on(data, dynamics_mode("full"));
     fmt::print("{}\n", name);
     print("  mask", mask);
     print("  paper", paper);

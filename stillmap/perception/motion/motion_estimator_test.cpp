@@ -13,7 +13,7 @@
 #include "stillmap/io/trajectory_io.hpp"
 #include "stillmap/perception/objects/object_tracker.hpp"
 #include "tests/support/dynamics_frames.hpp"
-#include "tests/support/image_files.hpp"
+#include "tests/support/shared_data.hpp"
 
 namespace stillmap {
 namespace {
@@ -227,9 +227,9 @@ MotionScore score_motion(const TruthSequence& data) {
 
 TEST(MotionEstimator, TellPeopleWhoWalkFromWhatStandsOnTruth) {
   for (const char* name : {"twin_walking_xyz", "fr1_xyz_walkers"}) {
-    const std::unique_ptr<TruthSequence> data = TruthSequence::open(shared_data_folder() / name);
-    if (!data) GTEST_SKIP() << "the shared test data is absent (set STILLMAP_DATA)";
-    const MotionScore score = score_motion(*data);
+    STILLMAP_NEED_SHARED_DATA(name);
+    const TruthSequence data(shared_data(name));
+    const MotionScore score = score_motion(data);
     const std::string what = fmt::format("{}: {} of {} who walk move, {} of {} that stand",
                                          name,
                                          score.fast_moving,

@@ -11,7 +11,7 @@
 #include "stillmap/perception/detections/box_overlap.hpp"
 #include "stillmap/perception/objects/boxes.hpp"
 #include "tests/support/dynamics_frames.hpp"
-#include "tests/support/image_files.hpp"
+#include "tests/support/shared_data.hpp"
 
 namespace stillmap {
 namespace {
@@ -354,12 +354,12 @@ FillScore score_fills(const std::vector<FrameObjects>& out,
 // The boxes of the truth, with two of every seven frames taken away.
 TEST(ObjectTracker, FillsTheBoxesOfPeopleOnTruth) {
   for (const char* name : {"twin_walking_xyz", "fr1_xyz_walkers"}) {
-    const std::unique_ptr<TruthSequence> data = TruthSequence::open(shared_data_folder() / name);
-    if (!data) GTEST_SKIP() << "the shared test data is absent (set STILLMAP_DATA)";
-    const std::vector<TruthSequence::Frame> truth = truth_frames(*data, 150);
+    STILLMAP_NEED_SHARED_DATA(name);
+    const TruthSequence data(shared_data(name));
+    const std::vector<TruthSequence::Frame> truth = truth_frames(data, 150);
     for (const FillRule rule : {FillRule::kBothWays, FillRule::kCausal}) {
-      const FillScore score = score_fills(
-          track_all(ObjectTracker({}, rule), detections_with_gaps(*data, truth)), truth);
+      const FillScore score =
+          score_fills(track_all(ObjectTracker({}, rule), detections_with_gaps(data, truth)), truth);
       const std::string what =
           fmt::format("{} {}: {} boxes, {} found, mean IoU {:.3f}, held {:.3f}",
                       name,

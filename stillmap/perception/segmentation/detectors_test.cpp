@@ -8,7 +8,7 @@
 #include "stillmap/perception/segmentation/centernet.hpp"
 #include "stillmap/perception/segmentation/nanodet.hpp"
 #include "stillmap/perception/segmentation/ssd.hpp"
-#include "tests/support/image_files.hpp"
+#include "tests/support/files.hpp"
 
 namespace stillmap {
 namespace {

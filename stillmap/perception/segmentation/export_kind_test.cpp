@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/support/image_files.hpp"
+#include "tests/support/files.hpp"
 
 namespace stillmap {
 namespace {

@@ -10,7 +10,7 @@
 #include "stillmap/perception/segmentation/found_object.hpp"
 #include "stillmap/perception/segmentation/matting.hpp"
 #include "stillmap/perception/segmentation/yolo.hpp"
-#include "tests/support/image_files.hpp"
+#include "tests/support/files.hpp"
 
 namespace stillmap {
 namespace {

@@ -16,7 +16,8 @@
 #include "stillmap/perception/detections/detections_io.hpp"
 #include "stillmap/perception/segmentation/model_folder.hpp"
 #include "stillmap/perception/segmentation/onnx_runtime.hpp"
-#include "tests/support/image_files.hpp"
+#include "tests/support/files.hpp"
+#include "tests/support/shared_data.hpp"
 
 namespace stillmap {
 namespace {
@@ -188,10 +189,8 @@ class FetchedNetworks : public OnnxNetworks {
     if (!std::filesystem::exists(model_folder() / "selfie.onnx")) {
       GTEST_SKIP() << "no networks in " << model_folder() << ": make models";
     }
-    photos_ = shared_data_folder() / "photos";
-    if (!std::filesystem::is_directory(photos_)) {
-      GTEST_SKIP() << "the shared test data is absent (set STILLMAP_DATA)";
-    }
+    STILLMAP_NEED_SHARED_DATA("photos");
+    photos_ = shared_data("photos");
   }
 
   [[nodiscard]] ColorImage photo(const std::string& stamp) const {

@@ -70,13 +70,4 @@ class FileSizeLimit {
   return "";
 }
 
-/// The folder with the shared test data, or nothing where it is absent.
-[[nodiscard]] inline std::filesystem::path shared_data_folder() {
-  const char* variable = std::getenv("STILLMAP_DATA");
-  const std::filesystem::path folder =
-      variable != nullptr ? std::filesystem::path(variable)
-                          : std::filesystem::path(STILLMAP_SOURCE_DIR) / ".." / "shared" / "data";
-  return std::filesystem::is_directory(folder) ? folder : std::filesystem::path();
-}
-
 }  // namespace stillmap
