@@ -35,7 +35,8 @@ constexpr const char* kExamples =
     "  stillmap evaluate trajectory office/groundtruth.txt result/trajectory.txt\n"
     "  stillmap export result --octomap map.bt     its map for other programs\n"
     "  stillmap view result/map.ply --out map.png  the map from the front, the left and above\n"
-    "  stillmap config                             every setting, its default and its meaning\n";
+    "  stillmap config                             the common settings, their defaults and "
+    "meanings\n";
 
 std::string version_text() {
   const std::string commit = kCommit.empty() ? "" : fmt::format(" (commit {})", kCommit);

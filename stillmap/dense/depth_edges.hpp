@@ -16,11 +16,10 @@ struct DepthEdgesConfig {
     visit("step_m",
           self.step_m,
           FieldInfo{
-              "depths of neighbours that differ more are an edge (tau3 of Fan 2020)", "m", 0, 100});
+              "depth difference of neighbours that makes an edge (tau3 of Fan 2020)", "m", 0, 100});
     visit("step_per_m",
           self.step_per_m,
-          FieldInfo{
-              "growing: an edge differs more than this times depth squared, too", "1/m", 0, 10});
+          FieldInfo{"growing: least depth difference at an edge, per depth squared", "1/m", 0, 10});
   }
 };
 

@@ -31,42 +31,52 @@ struct FreeSpaceConfig {
   static void fields(Self& self, Visitor& visit) {
     visit("cell_m",
           self.cell_m,
-          FieldInfo{"points of a cube with this edge are judged together", "m", 0.001, 1});
+          FieldInfo{"edge of the cubes whose points are judged together", "m", 0.001, 1});
     visit(
         "margin_m",
         self.margin_m,
-        FieldInfo{"a point is seen through when depth is measured this far behind it", "m", 0, 10});
+        FieldInfo{"distance behind a point at which a measured depth sees through it", "m", 0, 10});
     visit("margin_per_m",
           self.margin_per_m,
-          FieldInfo{"growth of that distance with depth squared", "1/m", 0, 1});
+          FieldInfo{"growth of margin_m with depth squared", "1/m", 0, 1});
     visit("min_through",
           self.min_through,
-          FieldInfo{"views that must see through a point, the last that tell of it", "", 1, 1000});
-    visit("min_stay",
-          self.min_stay,
-          FieldInfo{
-              "a point that was seen through stays when so many later views see it", "", 1, 255});
+          FieldInfo{"number of final views in a row seeing through a point that remove it if "
+                    "max_through_share holds",
+                    "",
+                    1,
+                    1000});
+    visit(
+        "min_stay",
+        self.min_stay,
+        FieldInfo{
+            "number of views after the last one seeing through a point that keep it", "", 1, 255});
     visit("max_through_share",
           self.max_through_share,
           FieldInfo{
-              "or when no more than this many see through it for each that sees it", "", 0, 10});
+              "greatest ratio of views that see through a point to views that see it", "", 0, 10});
     visit("max_moving_share",
           self.max_moving_share,
-          FieldInfo{"it goes when more than this many take it for what moves for each that sees it",
+          FieldInfo{"greatest ratio of views that see motion at a point to views that see it",
                     "",
                     0,
                     1000});
     visit("weakly_seen",
           self.weakly_seen,
-          FieldInfo{"a point that no more than this many see goes when one of them sees what moves "
-                    "beside it",
+          FieldInfo{"number of views up to which a point is removed when one sees motion beside it",
                     "",
                     0,
                     255});
-    visit("beside_share",
-          self.beside_share,
-          FieldInfo{"beside: so near in the image, as a share of its width", "", 0, 1});
-    visit("beside_m", self.beside_m, FieldInfo{"and so near in depth", "m", 0, 10});
+    visit(
+        "beside_share",
+        self.beside_share,
+        FieldInfo{"greatest distance of that motion in the image, as a share of the image's width",
+                  "",
+                  0,
+                  1});
+    visit("beside_m",
+          self.beside_m,
+          FieldInfo{"greatest distance of that motion in depth", "m", 0, 10});
   }
 };
 

@@ -30,14 +30,20 @@ struct LocalCloudConfig {
   static void fields(Self& self, Visitor& visit) {
     visit("cells_across",
           self.cells_across,
-          FieldInfo{"a view's points are means over square cells, so many in the image's width",
+          FieldInfo{"number of square cells across the image; a view's points are means over cells",
                     "",
                     1,
                     10000});
     visit("join_per_m",
           self.join_per_m,
-          FieldInfo{"and over depths within join_per_m (z + join_offset_m)^2", "1/m", 0, 1});
-    visit("join_offset_m", self.join_offset_m, FieldInfo{"see join_per_m", "m", 0, 100});
+          FieldInfo{"depth within which pixels of a cell form one point: join_per_m (depth + "
+                    "join_offset_m)^2",
+                    "1/m",
+                    0,
+                    1});
+    visit("join_offset_m",
+          self.join_offset_m,
+          FieldInfo{"offset in the formula of join_per_m", "m", 0, 100});
   }
 };
 

@@ -19,17 +19,20 @@ struct RangeImageConfig {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
+    visit("block_px",
+          self.block_px,
+          FieldInfo{"edge of the square pixel blocks of a range image", "px", 1, 64});
     visit(
-        "block_px",
-        self.block_px,
-        FieldInfo{"how far is seen is kept for square blocks of pixels of this side", "px", 1, 64});
-    visit("rim_blocks",
-          self.rim_blocks,
-          FieldInfo{"it is the least over so many blocks on each side", "", 0, 16});
+        "rim_blocks",
+        self.rim_blocks,
+        FieldInfo{"number of neighbouring blocks on each side that a block's least range includes",
+                  "",
+                  0,
+                  16});
     visit(
         "max_missing",
         self.max_missing,
-        FieldInfo{"nothing is known of a block that lacks depth in more of its pixels", "", 0, 1});
+        FieldInfo{"share of missing depth above which the range of a block is unknown", "", 0, 1});
   }
 };
 

@@ -22,11 +22,11 @@ struct StaticDepthConfig {
   static void fields(Self& self, Visitor& visit) {
     visit("max_depth_m",
           self.max_depth_m,
-          FieldInfo{"depth beyond this does not go into the map", "m", 0.1, 1000});
+          common_setting(FieldInfo{"greatest depth that goes into the dense map", "m", 0.1, 1000}));
     visit("edges",
           self.edges,
-          FieldInfo{"removal of depth edges: with the paper's threshold, or one that grows with "
-                    "depth; by_mode: as dynamics.mode has it",
+          FieldInfo{"removal of depth edges. fixed: by edge.step_m; growing: with depth, too; "
+                    "by_mode: as dynamics.mode says",
                     "",
                     0,
                     0,
@@ -34,15 +34,15 @@ struct StaticDepthConfig {
     visit.group("edge", self.edge);
     visit("islands",
           self.islands,
-          FieldInfo{"removal of small patches of depth; by_mode: as dynamics.mode has it",
+          FieldInfo{"removal of small patches of depth; by_mode: as dynamics.mode says",
                     "",
                     0,
                     0,
                     {"by_mode", "off", "on"}});
-    visit(
-        "min_island_share",
-        self.min_island_share,
-        FieldInfo{"patches smaller than this share of the image go (tau4 of Fan 2020)", "", 0, 1});
+    visit("min_island_share",
+          self.min_island_share,
+          FieldInfo{
+              "share of the image below which a patch is removed (tau4 of Fan 2020)", "", 0, 1});
   }
 };
 

@@ -38,27 +38,29 @@ struct CloudConfig {
   static void fields(Self& self, Visitor& visit) {
     visit("voxel_size_m",
           self.voxel_size_m,
-          FieldInfo{
-              "edge of the voxels that the map is thinned to, one point each", "m", 0.001, 1.0});
+          common_setting(
+              FieldInfo{"edge of the voxels of the dense map, which keeps one point per voxel",
+                        "m",
+                        0.001,
+                        1.0}));
     StaticDepthConfig::fields(self.depth, visit);
     LocalCloudConfig::fields(self.local, visit);
-    visit(
-        "view_gap_frames",
-        self.view_gap_frames,
-        FieldInfo{"so long after the last view that went into the map, a frame does that is no key "
-                  "frame; 0: key frames alone",
-                  "frames",
-                  0,
-                  1000000});
+    visit("view_gap_frames",
+          self.view_gap_frames,
+          common_setting(FieldInfo{"number of frames after a view that make any frame a view; 0: "
+                                   "only key frames are views",
+                                   "frames",
+                                   0,
+                                   1000000}));
     visit.group("views", self.views);
     visit("free_space",
           self.free_space,
-          FieldInfo{
-              "removal of points that other views see through; by_mode: as dynamics.mode has it",
+          common_setting(FieldInfo{
+              "removal of points that later views see through; by_mode: as dynamics.mode says",
               "",
               0,
               0,
-              {"by_mode", "off", "on"}});
+              {"by_mode", "off", "on"}}));
     visit.group("range", self.range);
     visit.group("free", self.free);
   }

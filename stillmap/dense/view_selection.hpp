@@ -18,28 +18,24 @@ struct ViewSelectionConfig {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("enough",
-          self.enough,
-          FieldInfo{"a surface is well known when so many views of the map show it; 0: every view "
-                    "joins the map",
-                    "",
-                    0,
-                    1000});
-    visit("nearer",
-          self.nearer,
-          FieldInfo{"and are no farther from it than this many times the distance of the new one",
-                    "",
-                    1,
-                    1000});
+    visit(
+        "enough",
+        self.enough,
+        FieldInfo{
+            "number of views that make a surface well known; 0: every view is kept", "", 0, 1000});
+    visit(
+        "nearer",
+        self.nearer,
+        FieldInfo{"factor on the distance of the new view within which those views must have been",
+                  "",
+                  1,
+                  1000});
     visit("min_unknown_share",
           self.min_unknown_share,
-          FieldInfo{
-              "a view joins the map when more than this share of it is not well known", "", 0, 1});
-    visit(
-        "min_changed_share",
-        self.min_changed_share,
-        FieldInfo{
-            "or more than this share is not as the map has it: something came or went", "", 0, 1});
+          FieldInfo{"share of surface not well known above which a view is kept", "", 0, 1});
+    visit("min_changed_share",
+          self.min_changed_share,
+          FieldInfo{"share of surface that came or went above which a view is kept", "", 0, 1});
   }
 };
 

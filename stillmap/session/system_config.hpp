@@ -35,11 +35,13 @@ struct LiveConfig {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit(
-        "look_gap_frames",
-        self.look_gap_frames,
-        FieldInfo{
-            "--live: the network looks at no more than one in so many frames", "frames", 1, 1000});
+    visit("look_gap_frames",
+          self.look_gap_frames,
+          common_setting(FieldInfo{
+              "least number of frames between two frames given to the network in a live run",
+              "frames",
+              1,
+              1000}));
   }
 };
 
@@ -58,7 +60,7 @@ struct SystemConfig {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("seed", self.seed, FieldInfo{"of every random choice"});
+    visit("seed", self.seed, common_setting(FieldInfo{"seed of all random choices (RANSAC)"}));
     visit.group("tracking", self.tracking);
     visit.group("measurement", self.measurement);
     visit.group("dynamics", self.dynamics);

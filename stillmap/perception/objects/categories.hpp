@@ -25,11 +25,13 @@ struct CategoryConfig {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit(
-        "dynamic", self.dynamic, FieldInfo{"classes that move by themselves, separated by commas"});
+    visit("dynamic",
+          self.dynamic,
+          common_setting(FieldInfo{"classes that move by themselves, separated by commas"}));
     visit("potentially_dynamic",
           self.potentially_dynamic,
-          FieldInfo{"classes that people move, separated by commas; the rest is static"});
+          common_setting(FieldInfo{
+              "classes that people move, separated by commas; all other classes are static"}));
   }
 };
 

@@ -27,22 +27,31 @@ struct ObjectTrackerConfig {
   static void fields(Self& self, Visitor& visit) {
     visit("search_frames",
           self.search_frames,
-          FieldInfo{"how far a missed box is searched each way (Fan 2020: 3)", "frames", 0, 30});
+          FieldInfo{"number of frames searched each way for a missed box (3 in Fan 2020)",
+                    "frames",
+                    0,
+                    30});
     visit("min_iou",
           self.min_iou,
-          FieldInfo{"overlap of a box with where its track should be", "", 0.01, 1});
+          FieldInfo{"least overlap (IoU) of a box with its track's predicted box", "", 0.01, 1});
     visit("velocity_gain",
           self.velocity_gain,
-          FieldInfo{"share of a new box in the velocity of its track", "", 0, 1});
+          FieldInfo{"weight of the newest box in the velocity of its track", "", 0, 1});
     visit("duplicate_iou",
           self.duplicate_iou,
-          FieldInfo{"a box is not filled in where one of its class overlaps more", "", 0, 1});
-    visit("min_sightings",
-          self.min_sightings,
-          FieldInfo{"a track detected less often is not filled in (Fan 2020: 1)", "", 1, 10});
+          FieldInfo{"overlap (IoU) with a detection of the same class above which a missed box is "
+                    "not filled in",
+                    "",
+                    0,
+                    1});
+    visit(
+        "min_sightings",
+        self.min_sightings,
+        FieldInfo{
+            "number of detections that a track needs to be filled in (1 in Fan 2020)", "", 1, 10});
     visit("carry_depth_margin_m",
           self.carry_depth_margin_m,
-          FieldInfo{"how much nearer or farther a missed object may be", "m", 0, 10});
+          FieldInfo{"change of depth that a propagated mask allows its object", "m", 0, 10});
   }
 };
 
