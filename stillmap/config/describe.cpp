@@ -79,9 +79,8 @@ std::string describe_field(const FieldRef& field, const Columns& columns) {
 
 std::vector<FieldRef> common_fields(std::span<const FieldRef> fields) {
   std::vector<FieldRef> common;
-  std::ranges::copy_if(fields, std::back_inserter(common), [](const FieldRef& field) {
-    return field.info.common;
-  });
+  std::ranges::copy_if(
+      fields, std::back_inserter(common), [](const FieldRef& field) { return field.info.common; });
   return common;
 }
 
