@@ -80,35 +80,36 @@ struct FreeSpaceConfig {
   }
 };
 
-/// What a view knows of the space before it.
+/// The range image of a view with the view's pose.
 struct PosedRange {
   Eigen::Isometry3d T_world_camera;
   const RangeImage* range;  ///< not null; not owned
 };
 
-/// What views, in the order of their time, tell of a point. Counts end at 255.
+/// How views, in the order of their time, see a point. Counts saturate at 255.
 struct Sightings {
-  std::uint8_t seen = 0;       ///< views that measure it
-  std::uint8_t moving = 0;     ///< that measure something at its place which moves
-  std::uint8_t beside = 0;     ///< that measure it beside what moves; only for weakly seen points
-  std::uint8_t through = 0;    ///< that see through it
-  std::uint8_t seen_last = 0;  ///< that measure it after the last that sees through it
-  std::uint8_t through_last = 0;  ///< that see through it after the last that measures it
+  std::uint8_t seen = 0;    ///< views that measure the point
+  std::uint8_t moving = 0;  ///< views that measure a moving object at the point
+  std::uint8_t beside =
+      0;  ///< views with a moving object beside the point; weakly seen points only
+  std::uint8_t through = 0;       ///< views that see through the point
+  std::uint8_t seen_last = 0;     ///< views that measure it after the last one that sees through it
+  std::uint8_t through_last = 0;  ///< views that see through it after the last one that measures it
 };
 
-/// For each point (world), what the views tell of it. One that has the point out of view,
-/// hidden, or where its range is not known, tells nothing. The same with any number of threads.
+/// The sightings of each point (world frame, metres). A view in which the point is out of the
+/// image, hidden, or at an unknown range does not count. The same with any number of threads.
 [[nodiscard]] std::vector<Sightings> sightings(std::span<const Eigen::Vector3f> points,
                                                std::span<const PosedRange> ranges,
                                                const CameraModel& camera,
                                                const FreeSpaceConfig& config,
                                                std::size_t threads = 1);
 
-/// Whether a point is part of the static world as it is at the end.
+/// Whether a point belongs to the static world as it is at the end of the run.
 [[nodiscard]] bool stays(const Sightings& s, const FreeSpaceConfig& config);
 
-/// The points of a map that stay, by what the frames tell of them. Points of a cube of `cell_m`
-/// have one verdict: that of their mean. The same with any number of threads.
+/// The map without the points that sightings remove: those of moved objects. All points of a cube
+/// of edge `cell_m` share the decision for their mean. The same with any number of threads.
 [[nodiscard]] PointCloud without_moved(const PointCloud& map,
                                        std::span<const PosedRange> ranges,
                                        const CameraModel& camera,

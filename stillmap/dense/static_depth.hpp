@@ -46,11 +46,11 @@ struct StaticDepthConfig {
   }
 };
 
-/// What of a depth image (metres) is static surface near enough for the map; 0 elsewhere. In this
-/// order: pixels go that are not 0 in `dynamic` (of the same size, or empty) or that have no depth
-/// (not over 0, not finite), then edges (without_edges()), what is beyond `max_depth_m`, and
-/// islands (without_islands()). Edges go before far depth does, for the rim of something before a
-/// far wall is between the two as well. "by_mode" stands for "off" here.
+/// The depth (metres) of static surface near enough for the map; 0 elsewhere. Removes, in this
+/// order: pixels that are set in `dynamic` (of the same size, or empty) or have no depth (not over
+/// 0, not finite), edges (without_edges()), depth beyond `max_depth_m`, and islands
+/// (without_islands()). Edges come before far depth, because the rim of an object before a far wall
+/// lies between the two. "by_mode" counts as "off".
 [[nodiscard]] cv::Mat1f static_depth(const cv::Mat1f& depth,
                                      const Mask& dynamic,
                                      const StaticDepthConfig& config);

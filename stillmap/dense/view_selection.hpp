@@ -39,24 +39,24 @@ struct ViewSelectionConfig {
   }
 };
 
-/// What a view would add to those held, as shares of what it shows.
+/// The gain of a new view over the views held, as shares of the surface that it shows.
 struct ViewGain {
-  double unknown = 0;  ///< not seen by enough of them from near enough
-  double came = 0;     ///< stands where the last of them see through
-  double went = 0;     ///< is seen through although the map made of them has it; not looked for
-                       ///< where the others suffice for the view to join
+  double unknown = 0;  ///< surface not seen by enough of them from near enough
+  double came = 0;     ///< surface that the last of them see through
+  double went = 0;  ///< map surface that the new view sees through; 0 if the others already suffice
+                    ///< to keep the view
 };
 
-/// Compares a sample of a view's points with the ranges of the views held, in the order of their
-/// time, and a sample of their points with its range. Views without range tell nothing. Takes time
-/// linear in the number of views.
+/// Compares a sample of the view's points with the range images of the views held, in the order of
+/// their time, and a sample of their points with its range image. Views without range images are
+/// ignored. Takes time linear in the number of views.
 [[nodiscard]] ViewGain gain_of(const PosedView& view,
                                std::span<const PosedView> held,
                                const CameraModel& camera,
                                const ViewSelectionConfig& config,
                                const FreeSpaceConfig& free_space);
 
-/// Whether a view is to join those held.
+/// Whether a view with this gain is kept.
 [[nodiscard]] bool is_worth_keeping(const ViewGain& news, const ViewSelectionConfig& config);
 
 }  // namespace stillmap

@@ -55,30 +55,31 @@ struct ObjectTrackerConfig {
   }
 };
 
-/// How missed boxes are filled in.
+/// The frames from which missed boxes are filled in.
 enum class FillRule : std::uint8_t {
-  kBothWays,  ///< Fan 2020, section 4 with Eq. (10): from the frames before and after
-  kCausal,    ///< from the frames before alone, at the velocity the box had
+  kBothWays,  ///< frames before and after (Fan 2020, section III-C, Eq. (10))
+  kCausal,    ///< frames before only, with the velocity of the box
 };
 
-/// Gives objects an identity over frames, and fills in those that the network has missed.
+/// Tracks objects over frames and fills in objects that the network missed (Fan 2020, section
+/// III-C).
 ///
-/// Boxes of a class are the same object when they overlap where the velocity of its box puts it;
-/// best overlap first. The same input gives the same bits. With kBothWays a frame leaves
-/// `search_frames` frames after it came, with kCausal at once.
+/// A detection continues a track of its class when its box overlaps with the predicted box of the
+/// track; the best overlaps are taken first. The same input gives the same bits. With kBothWays a
+/// frame is returned `search_frames` frames after it was pushed, with kCausal at once.
 class ObjectTracker {
  public:
   ObjectTracker(const ObjectTrackerConfig& config, FillRule rule);
 
-  /// Takes the next frame, of a later stamp; gives the frame that leaves now, if any. The images
-  /// are kept as long as they may be needed, not copied.
+  /// Takes the next frame, with a later stamp, and returns the frame that is complete now, if any.
+  /// Images are kept as long as needed, without copying.
   [[nodiscard]] std::optional<FrameObjects> push(ObservedFrame frame);
 
-  /// The end: the frames that have not left, in order. Nothing may be pushed afterwards.
+  /// Ends the stream: returns the remaining frames in order. Nothing may be pushed afterwards.
   [[nodiscard]] std::vector<FrameObjects> flush();
 
-  /// What is known of a frame that no network has looked at, later than those pushed: all that they
-  /// show of late, each object filled in. With kCausal only.
+  /// The objects of a frame that the network did not see, later than all pushed frames: the recent
+  /// objects of those, each filled in. With kCausal only.
   [[nodiscard]] FrameObjects carry_to(FrameId frame,
                                       const Stamp& stamp,
                                       const DepthImage& depth) const;
@@ -87,9 +88,9 @@ class ObjectTracker {
   struct Track {
     TrackId id;
     std::string class_name;
-    PixelBox box;                   // when it was last detected
-    PixelBox velocity{0, 0, 0, 0};  // of each side, pixels a second
-    double seen_s = 0;              // the stamp of then
+    PixelBox box;                   // of its last detection
+    PixelBox velocity{0, 0, 0, 0};  // of each side, pixels per second
+    double seen_s = 0;              // stamp of its last detection
     std::size_t seen_at = 0;        // position of that frame in the stream
     int sightings = 0;
   };
@@ -103,7 +104,7 @@ class ObjectTracker {
   struct Sighting {
     const Held* held = nullptr;
     std::size_t object = 0;
-    int distance = 0;  // frames between
+    int distance = 0;  // number of frames in between
   };
   struct Fill {
     PixelBox box;
