@@ -20,7 +20,7 @@ std::vector<std::string> subcommand_names(const CLI::App& app) {
   return names;
 }
 
-// "stillmap evaluate map", the command that was meant as far as it is known.
+// The command as far as it was recognised, such as "stillmap evaluate map".
 std::string command_path(const CLI::App& app) {
   std::string path = app.get_name();
   for (const CLI::App* command = &app; !command->get_subcommands().empty();) {
@@ -30,7 +30,8 @@ std::string command_path(const CLI::App& app) {
   return path;
 }
 
-// CLI11 takes a misspelt command for a surplus argument; here it is named, with the nearest one.
+// CLI11 takes a misspelt command for a surplus argument. This message names it, with the nearest
+// command.
 void check_command_names(const CLI::App& app, std::span<const std::string> arguments) {
   const CLI::App* command = &app;
   std::string path = app.get_name();
@@ -56,7 +57,7 @@ std::string one_line(std::string text) {
 void run_command_line(CLI::App& app, std::span<const std::string> arguments) {
   check_command_names(app, arguments);
   try {
-    // CLI11 takes them from the back.
+    // CLI11 takes arguments from the back.
     app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
   } catch (const CLI::Success& asked_for_text) {
     std::ostringstream text;

@@ -8,9 +8,9 @@
 
 namespace stillmap {
 
-/// Parses the arguments (without the program's name) and runs the command they name. Help and
-/// version go to standard output. Throws Error, with a pointer to the right --help, for bad usage,
-/// and passes on what the command throws.
+/// Parses the arguments (without the program's name) and runs their command. Help and version go to
+/// standard output. Throws Error, with a pointer to the right --help, for wrong usage. Exceptions
+/// of the command pass through.
 void run_command_line(CLI::App& app, std::span<const std::string> arguments);
 
 }  // namespace stillmap

@@ -7,16 +7,17 @@
 
 namespace stillmap {
 
-/// What a command leaves for the program's end.
+/// The result of a command for the end of the program.
 struct CommandResult {
   int exit_code = 0;
 };
 
-// Each command adds its subcommand to the program's command line. The subcommand's callback does
-// the work, throws Error for bad usage or bad input, and sets an exit code other than 0 itself.
-// `result` outlives the callback.
+// Each function adds a subcommand to the program's command line. The callback of the subcommand
+// does the work, throws Error for wrong usage or input, and sets exit codes other than 0 in
+// `result`, which outlives the callback.
 //
-// A new command: apps/commands/NAME.cpp, its line here, in main.cpp's table and in CMakeLists.txt.
+// A new command needs apps/commands/NAME.cpp and a line here, in the table of main.cpp and in
+// CMakeLists.txt.
 void add_synth_command(CLI::App& app, CommandResult& result);
 void add_segment_command(CLI::App& app, CommandResult& result);
 void add_run_command(CLI::App& app, CommandResult& result);
@@ -26,7 +27,7 @@ void add_merge_command(CLI::App& app, CommandResult& result);
 void add_view_command(CLI::App& app, CommandResult& result);
 void add_config_command(CLI::App& app, CommandResult& result);
 
-/// Writes to standard output. Throws Error when that fails (a full disk, a closed pipe).
+/// Writes to standard output. Throws Error on failure (full disk, closed pipe).
 void print_output(std::string_view text);
 
 }  // namespace stillmap

@@ -35,7 +35,8 @@ constexpr const char* kExamples =
     "  stillmap evaluate trajectory office/groundtruth.txt result/trajectory.txt\n"
     "  stillmap export result --octomap map.bt     its map for other programs\n"
     "  stillmap view result/map.ply --out map.png  the map from the front, the left and above\n"
-    "  stillmap config                             every setting, its default and its meaning\n";
+    "  stillmap config                             the common settings, their defaults and "
+    "meanings\n";
 
 std::string version_text() {
   const std::string commit = kCommit.empty() ? "" : fmt::format(" (commit {})", kCommit);
@@ -49,7 +50,7 @@ std::string version_text() {
 
 using AddCommand = void (*)(CLI::App&, CommandResult&);
 
-// In the order of --help.
+// The commands, in the order of --help.
 const std::vector<AddCommand> kCommands = {add_run_command,
                                            add_segment_command,
 #if STILLMAP_WITH_SIMULATION
@@ -63,11 +64,12 @@ const std::vector<AddCommand> kCommands = {add_run_command,
 
 int run(const std::vector<std::string>& arguments) {
   CommandResult result;
-  CLI::App app("RGB-D SLAM: the camera's path and a clean 3-D map of the static world", "stillmap");
+  CLI::App app("RGB-D SLAM: the camera's trajectory and a clean 3-D map of the static world",
+               "stillmap");
   app.set_version_flag("--version", version_text, "Print the versions of program and libraries");
   app.require_subcommand(1);
   for (const AddCommand add_command : kCommands) add_command(app, result);
-  app.footer(kExamples);  // last, for subcommands would inherit it
+  app.footer(kExamples);  // last, because subcommands would inherit it
   run_command_line(app, arguments);
   return result.exit_code;
 }
@@ -76,7 +78,7 @@ int run(const std::vector<std::string>& arguments) {
 }  // namespace stillmap
 
 int main(int argc, char** argv) {
-  // Threads are this program's own business: OpenCV's would wait for those that are at work.
+  // This program has its own threads. OpenCV's would compete with them.
   cv::setNumThreads(1);
   try {
     return stillmap::run(std::vector<std::string>(argv + 1, argv + argc));

@@ -6,7 +6,7 @@
 
 namespace stillmap {
 
-/// A line on standard error that shows how far long work is; silent where that is no terminal.
+/// A progress line on standard error; silent if that is no terminal.
 class ProgressBar {
  public:
   explicit ProgressBar(std::string unit);
@@ -15,9 +15,9 @@ class ProgressBar {
   ProgressBar& operator=(const ProgressBar&) = delete;
 
   void show(std::size_t done, std::size_t total);
-  /// A line of its own, also where there is no terminal.
+  /// Prints a separate line, even without a terminal.
   void warn(const std::string& warning);
-  /// Clears the line.
+  /// Clears the progress line.
   void finish();
 
  private:

@@ -8,7 +8,7 @@
 
 namespace stillmap {
 
-/// The machine's.
+/// The steady clock of the machine.
 class SteadyClock : public Clock {
  public:
   [[nodiscard]] double now_s() override {

@@ -31,9 +31,9 @@ struct TrajectoryArguments {
 
 struct TrajectoryFigures {
   AteResult ate;
-  std::optional<RpeResult> rpe;  // nothing when the estimate is too short for it
+  std::optional<RpeResult> rpe;  // nothing if the estimate is too short
   std::size_t tracked = 0;
-  std::optional<std::size_t> frames;  // known with a sequence only
+  std::optional<std::size_t> frames;  // known only with a sequence
 };
 
 TrajectoryFigures measure(const TrajectoryArguments& arguments) {
@@ -103,11 +103,11 @@ std::string as_table(const TrajectoryFigures& figures) {
 void add_trajectory(CLI::App& evaluate) {
   const std::shared_ptr<TrajectoryArguments> arguments = std::make_shared<TrajectoryArguments>();
   CLI::App& command = *evaluate.add_subcommand(
-      "trajectory", "errors of a trajectory against ground truth, as the TUM benchmark has them");
+      "trajectory", "Errors of a trajectory against ground truth, as in the TUM benchmark");
   command.add_option("GT", arguments->groundtruth, "ground truth, TUM format")->required();
   command.add_option("EST", arguments->estimate, "estimated trajectory, TUM format")->required();
   command.add_option(
-      "--sequence", arguments->sequence, "its folder, for the share of tracked frames");
+      "--sequence", arguments->sequence, "folder of the sequence, for the share of tracked frames");
   command.add_flag("--json", arguments->json, "print JSON and nothing else");
   command.callback([arguments] {
     const TrajectoryFigures figures = measure(*arguments);
@@ -138,7 +138,7 @@ Eigen::Isometry3d required_alignment(const TrajectoryFile& groundtruth,
 
 void add_evaluate_command(CLI::App& app, CommandResult&) {
   CLI::App& evaluate =
-      *app.add_subcommand("evaluate", "measures results against truth")->require_subcommand(1);
+      *app.add_subcommand("evaluate", "Compare results with truth")->require_subcommand(1);
   add_trajectory(evaluate);
   add_evaluate_map(evaluate);
   add_evaluate_residue(evaluate);

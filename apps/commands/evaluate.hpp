@@ -10,7 +10,7 @@
 
 namespace stillmap {
 
-// What `stillmap evaluate` is made of.
+// The parts of `stillmap evaluate`.
 void add_evaluate_map(CLI::App& evaluate);
 void add_evaluate_residue(CLI::App& evaluate);
 
@@ -21,12 +21,12 @@ struct TrajectoryFile {
 
 [[nodiscard]] TrajectoryFile read_trajectory_file(const std::string& file);
 
-/// T_groundtruth_estimate for a map (see map_alignment). Throws Error, naming both files, where too
+/// T_groundtruth_estimate of a map (see map_alignment). Throws Error, naming both files, when too
 /// few stamps agree.
 [[nodiscard]] Eigen::Isometry3d required_alignment(const TrajectoryFile& groundtruth,
                                                    const TrajectoryFile& estimate);
 
-/// What is said when too few stamps agree.
+/// The message for too few stamps that agree.
 [[nodiscard]] Error too_few_pairs(const TrajectoryFile& groundtruth,
                                   const TrajectoryFile& estimate);
 

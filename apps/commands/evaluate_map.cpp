@@ -26,7 +26,7 @@ struct MapArguments {
   bool json = false;
 };
 
-// The map in the frame of the truth.
+// The map in the coordinate frame of the truth.
 PointCloud aligned(const PointCloud& map, const MapArguments& arguments) {
   if (arguments.groundtruth.empty()) return map;
   PointCloud result = moved(map,
@@ -81,14 +81,14 @@ void evaluate_map(const MapArguments& arguments) {
 void add_evaluate_map(CLI::App& evaluate) {
   const std::shared_ptr<MapArguments> arguments = std::make_shared<MapArguments>();
   CLI::App& command = *evaluate.add_subcommand(
-      "map", "a map against truth: what is missing, what should not be there, how exact it is");
+      "map", "A map against true surfaces: completeness, ghosts, accuracy");
   command.add_option("MAP", arguments->map, "the map, PLY")->required();
   command.add_option("--static", arguments->static_truth, "true static surface, PLY")->required();
-  command.add_option("--dynamic", arguments->dynamic_truth, "what moving things swept, PLY");
+  command.add_option("--dynamic", arguments->dynamic_truth, "surface swept by moving objects, PLY");
   CLI::Option* groundtruth = command.add_option("--groundtruth",
                                                 arguments->groundtruth,
-                                                "true trajectory; with --trajectory it says where "
-                                                "the map lies, else map and truth share a frame");
+                                                "true trajectory; with --trajectory it aligns the "
+                                                "map, else map and truth share a coordinate frame");
   CLI::Option* trajectory =
       command.add_option("--trajectory", arguments->trajectory, "the trajectory of the map's run");
   groundtruth->needs(trajectory);

@@ -30,20 +30,20 @@ struct ResidueArguments {
   bool json = false;
 };
 
-/// The map and the frames that test it, all in one world.
+/// The map and the poses of the frames that test it, in one world frame.
 struct PosedSequence {
   PointCloud map;
   std::map<std::uint32_t, Eigen::Isometry3d> T_world_camera;  ///< of frames
 };
 
-// The camera of the run; a run of an earlier version has not kept it.
+// The camera of the run. Runs of earlier versions did not keep it.
 TumSequence open_sequence(const ResidueArguments& arguments) {
   const std::filesystem::path camera = std::filesystem::path(arguments.run) / "camera.yaml";
   if (!std::filesystem::exists(camera)) return TumSequence::open(arguments.sequence);
   return TumSequence::open(arguments.sequence, {.camera = read_camera_yaml(camera)});
 }
 
-// The frames that the run has tracked, in its own world.
+// The frames that the run tracked, in its world frame.
 PosedSequence as_estimated(PointCloud map,
                            const TumSequence& sequence,
                            const TrajectoryFile& estimate) {
@@ -65,7 +65,7 @@ PosedSequence as_estimated(PointCloud map,
   return posed;
 }
 
-// All frames that truth has poses for, in its world.
+// All frames with true poses, in the world frame of the truth.
 PosedSequence as_true(const PointCloud& map,
                       const TumSequence& sequence,
                       const TrajectoryFile& groundtruth,
@@ -86,7 +86,7 @@ Residue measure(const ResidueArguments& arguments) {
   const TrajectoryFile estimate = read_trajectory_file((run / "trajectory.txt").string());
   PointCloud map = read_map(run / "map.ply");
   const TumSequence sequence = open_sequence(arguments);
-  // Also with ground truth, to see that the run is of this sequence.
+  // With ground truth, too, to check that the run is of this sequence.
   PosedSequence posed = as_estimated(std::move(map), sequence, estimate);
   if (!arguments.groundtruth.empty()) {
     posed = as_true(posed.map, sequence, read_trajectory_file(arguments.groundtruth), estimate);
@@ -119,12 +119,12 @@ void evaluate_residue(const ResidueArguments& arguments) {
 void add_evaluate_residue(CLI::App& evaluate) {
   const std::shared_ptr<ResidueArguments> arguments = std::make_shared<ResidueArguments>();
   CLI::App& command = *evaluate.add_subcommand(
-      "residue", "what of a run's map its own depth images see through; needs no truth");
+      "residue", "The share of a map that its own depth images see through; needs no truth");
   command.add_option("RUN", arguments->run, "folder of the run")->required();
   command.add_option("SEQUENCE", arguments->sequence, "folder of its sequence")->required();
   command.add_option("--groundtruth",
                      arguments->groundtruth,
-                     "true trajectory: test with all frames of the sequence, at its poses");
+                     "true trajectory: tests with all frames of the sequence, at their true poses");
   command.add_flag("--json", arguments->json, "print JSON and nothing else");
   command.callback([arguments] { evaluate_residue(*arguments); });
 }

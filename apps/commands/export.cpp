@@ -58,11 +58,11 @@ const std::vector<FormatOption>& format_options() {
       {"--grid",
        &ExportArguments::grid,
        {".yaml", ".yml"},
-       "the ground for navigation, as ROS's map_server reads it: F.yaml and F.pgm beside it"}};
+       "the navigation grid for map_server of ROS: F.yaml and F.pgm beside it"}};
   return options;
 }
 
-// What can be wrong before anything is read.
+// The checks that need no file.
 void check_arguments(const ExportArguments& arguments) {
   std::vector<fs::path> targets;
   for (const FormatOption& option : format_options()) {
@@ -133,7 +133,7 @@ void add_octree_file(std::vector<FileContent>& files,
   files.push_back({arguments.octomap, encode_octree(space, format)});
 }
 
-// `run` is in the grid's frame.
+// `run` is in the coordinate frame of the grid.
 void add_grid_files(std::vector<FileContent>& files,
                     const ExportArguments& arguments,
                     const FinishedRun& run,
@@ -165,7 +165,7 @@ void run_export(const ExportArguments& arguments) {
   }
 }
 
-// CLI::Range lets nan pass.
+// CLI::Range accepts NaN.
 CLI::Validator between(double low, double high) {
   return {[low, high](std::string& text) -> std::string {
             double value = 0;
@@ -184,21 +184,24 @@ void add_settings(CLI::App& command, ExportArguments& arguments) {
   command
       .add_option("--max-range",
                   arguments.space.max_range_m,
-                  "how far from a camera space is held to be free, metres")
+                  "greatest distance from a camera at which space counts as free, metres")
       ->check(between(0.1, 100))
       ->capture_default_str();
   command
       .add_option("--min-height",
                   arguments.band.min_m,
-                  "grid: what is lower above the floor is in nobody's way, metres")
+                  "grid: least height above the floor of an obstacle, metres")
       ->check(between(0.01, 10))
       ->capture_default_str();
-  command.add_option("--max-height", arguments.band.max_m, "grid: and what is higher, metres")
+  command
+      .add_option("--max-height",
+                  arguments.band.max_m,
+                  "grid: greatest height above the floor of an obstacle, metres")
       ->check(between(0.02, 20))
       ->capture_default_str();
   command.add_flag("--upright",
                    arguments.upright,
-                   "all in the floor's frame (z up, 0 on the floor), not the map's own");
+                   "clouds and octree in the floor's coordinate frame (z up, 0 on the floor)");
   command.add_option("--camera",
                      arguments.camera,
                      "tum_fr1, tum_fr2, tum_fr3, bonn or a camera.yaml; instead of the run's own");
@@ -207,8 +210,8 @@ void add_settings(CLI::App& command, ExportArguments& arguments) {
 }  // namespace
 
 void add_export_command(CLI::App& app, CommandResult& /*result*/) {
-  CLI::App* command =
-      app.add_subcommand("export", "The map of a finished run in the formats of other programs");
+  CLI::App* command = app.add_subcommand(
+      "export", "Write the map of a finished run in the formats of other programs");
   const auto arguments = std::make_shared<ExportArguments>();
   command
       ->add_option("SOURCE",

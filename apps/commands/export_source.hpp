@@ -13,16 +13,16 @@
 
 namespace stillmap {
 
-/// What a run has left behind, as far as exports need it.
+/// The results of a run that exports need.
 struct FinishedRun {
   PointCloud map;  ///< not empty
   std::vector<Eigen::Isometry3d> T_world_keyframe;
-  std::optional<CameraModel> camera;  ///< where rays are needed
+  std::optional<CameraModel> camera;  ///< needed for rays
 };
 
-/// Reads a run's folder, or a saved session, whose map is made anew from its views: that of the
-/// submap with most frames. `camera`: instead of the run's own, unless empty. Throws Error for what
-/// is neither, or lacks something.
+/// Reads a run folder, or a saved session, whose map is made again from its views: that of the main
+/// submap. `camera`, unless empty, replaces the camera of the run. Throws Error for a path that is
+/// neither, and for missing parts.
 [[nodiscard]] FinishedRun read_finished_run(const std::filesystem::path& source,
                                             const std::string& camera,
                                             bool with_camera);

@@ -43,11 +43,13 @@ void run_merge(const MergeArguments& arguments) {
 
 void add_merge_command(CLI::App& app, CommandResult& /*result*/) {
   CLI::App* command =
-      app.add_subcommand("merge", "Two saved sessions of one room as one, by places in common");
+      app.add_subcommand("merge", "Merge two saved sessions of one room by common places");
   const auto arguments = std::make_shared<MergeArguments>();
-  command->add_option("A", arguments->first, "a map.stillmap; its coordinates stay")->required();
-  command->add_option("B", arguments->second, "another, of the same camera")->required();
-  command->add_option("--out", arguments->out, "file for both")->required();
+  command->add_option("A", arguments->first, "a map.stillmap, whose coordinates are kept")
+      ->required();
+  command->add_option("B", arguments->second, "another map.stillmap of the same camera")
+      ->required();
+  command->add_option("--out", arguments->out, "file for the merged session")->required();
   command->footer(
       "Examples:\n"
       "  stillmap merge monday/map.stillmap tuesday/map.stillmap --out office.stillmap\n"

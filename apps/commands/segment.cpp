@@ -32,7 +32,7 @@ struct SegmentArguments {
   std::size_t threads = 2;
 };
 
-// What was found in a frame, or why its image could not be read.
+// The detections of a frame, or the reason why its image could not be read.
 struct SegmentedFrame {
   FrameDetections detections;
   std::optional<std::string> damage;
@@ -43,7 +43,7 @@ bool is_in(const fs::path& path, const fs::path& folder) {
   return rest == folder.end();
 }
 
-// The place that a path means, whether anything is there or not.
+// The canonical form of a path, whether it exists or not.
 fs::path place_of(const fs::path& path) {
   std::error_code failure;
   fs::path place = fs::weakly_canonical(path, failure);
@@ -51,7 +51,7 @@ fs::path place_of(const fs::path& path) {
   return place.has_filename() ? place : place.parent_path();
 }
 
-// The results have the names that masks and detections of the input may have too.
+// Results have the same file names as masks and detections of the input may have.
 void check_out(const SegmentArguments& arguments) {
   const fs::path out = place_of(arguments.out), sequence = place_of(arguments.sequence);
   bool overwrites = out == sequence;
@@ -69,7 +69,7 @@ void check_out(const SegmentArguments& arguments) {
       (fs::path(arguments.sequence) / "detections").string());
 }
 
-// That of the first image that can be read.
+// The size of the first image that can be read.
 cv::Size image_size(const std::vector<SequenceEntry>& entries) {
   for (const SequenceEntry& entry : entries) {
     try {
@@ -107,7 +107,7 @@ void segment(const SegmentArguments& arguments) {
   check_out(arguments);
   const std::vector<SequenceEntry> entries = read_sequence_entries(arguments.sequence);
   const cv::Size size = image_size(entries);
-  // The frames are worked on side by side, each by one thread.
+  // Frames are processed in parallel, each by one thread.
   const std::unique_ptr<Segmenter> segmenter =
       make_segmenter(arguments.segmenter, size, {.threads = 1});
   DetectionsWriter writer(arguments.out, size);
@@ -157,7 +157,9 @@ void add_segment_command(CLI::App& app, CommandResult&) {
                    "auto (the networks that tools/fetch_models gets), onnx:MODEL.onnx or "
                    "detections:DIR")
       ->required();
-  command->add_option("--threads", arguments->threads, "frames that are worked on side by side")
+  command
+      ->add_option(
+          "--threads", arguments->threads, "number of frames that are processed in parallel")
       ->check(CLI::Range(std::size_t{1}, std::size_t{64}))
       ->capture_default_str();
   command->footer(

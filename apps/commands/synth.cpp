@@ -27,7 +27,7 @@ namespace {
 struct SynthArguments {
   std::string out;
   std::string scene;
-  std::size_t frames = 0;  // 0: as many as the scene takes
+  std::size_t frames = 0;  // 0: all frames of the scene
   std::uint32_t seed = 0;
   std::string size = "640x480";
   bool clean = false;
@@ -37,7 +37,7 @@ struct SynthArguments {
   std::size_t threads = std::max(1U, std::thread::hardware_concurrency());
 };
 
-// The names of effects for --without, and what each switches off.
+// The effects that --without switches off, by name.
 struct Effect {
   std::string_view name;
   void (*remove)(SyntheticOptions&);
@@ -73,7 +73,7 @@ DetectionKind detection_kind(const std::string& name) {
   throw Error("--detections {}: {}", name, name_hint(name, known));
 }
 
-// Null: everything is made in code.
+// Null: no assets.
 std::shared_ptr<const Assets> chosen_assets(const std::string& name) {
   const std::vector<std::string> known = {"auto", "none"};
   if (name == "none") return nullptr;
@@ -155,10 +155,12 @@ void add_synth_command(CLI::App& app, CommandResult&) {
   command
       ->add_option("--assets",
                    arguments->assets,
-                   "people and chairs of the Debian package sweethome3d-furniture: auto, where it "
-                   "is installed, or none")
+                   "people and chairs of the Debian package sweethome3d-furniture: auto (if it "
+                   "is installed) or none")
       ->capture_default_str();
-  command->add_option("--threads", arguments->threads, "that render; the result is the same")
+  command
+      ->add_option(
+          "--threads", arguments->threads, "number of rendering threads; the result is the same")
       ->check(CLI::Range(std::size_t{1}, std::size_t{256}))
       ->capture_default_str();
   command->footer(

@@ -33,7 +33,7 @@ struct ViewArguments {
   std::string from = "all";
   std::string size = "640x480";
   std::string groundtruth;
-  std::string up;  ///< empty: found
+  std::string up;  ///< empty: to be found
 };
 
 struct NamedSide {
@@ -56,7 +56,7 @@ std::vector<NamedSide> chosen_sides(const std::string& from) {
 
 struct PosedMap {
   PointCloud cloud;
-  Trajectory cameras;  ///< of its run; empty when there is none beside it
+  Trajectory cameras;  ///< trajectory of the run; empty if there is none beside the map
 };
 
 PosedMap read_posed_map(const std::string& file) {
@@ -68,7 +68,7 @@ PosedMap read_posed_map(const std::string& file) {
   return map;
 }
 
-// Into the frame of ground truth, which is that of maps without a run.
+// Moves the map to the coordinate frame of the ground truth, in which maps without a run are.
 PosedMap in_truth(PosedMap map, const Trajectory& groundtruth, const std::string& file) {
   if (map.cameras.empty()) {
     map.cameras = groundtruth;
@@ -92,7 +92,7 @@ std::vector<PosedMap> read_maps(const ViewArguments& arguments) {
   return maps;
 }
 
-// "z", "-y": the axis that points up; nothing for no text.
+// The axis that points up from a text such as "z" or "-y"; nothing for an empty text.
 std::optional<Eigen::Vector3d> up_axis(const std::string& name) {
   if (name.empty()) return std::nullopt;
   const double sign = name.front() == '-' ? -1.0 : 1.0;
@@ -105,7 +105,7 @@ std::string caption(const ViewArguments& arguments, std::size_t map, std::string
   return fmt::format("{}, {}", text, side);
 }
 
-// JPEG where the name says so, else PNG.
+// JPEG for a file name of JPEG, else PNG.
 std::string encoded(const ColorImage& picture, const std::string& file) {
   constexpr int kQuality = 85;
   if (!file.ends_with(".jpg") && !file.ends_with(".jpeg")) return encode_png(picture);
@@ -135,30 +135,32 @@ void view(const ViewArguments& arguments) {
 }  // namespace
 
 void add_view_command(CLI::App& app, CommandResult&) {
-  CLI::App* command = app.add_subcommand("view", "Pictures of maps, without a window");
+  CLI::App* command = app.add_subcommand("view", "Draw pictures of maps, without a window");
   const auto arguments = std::make_shared<ViewArguments>();
   command
       ->add_option("MAP",
                    arguments->maps,
-                   "PLY files, all of one place and in one frame; the first says where one looks "
-                   "from, by trajectory.txt beside it")
+                   "PLY files of one room in one coordinate frame; trajectory.txt beside the first "
+                   "determines the viewpoint")
       ->required();
   command->add_option("--out", arguments->out, "the picture, PNG, or JPEG as .jpg")->required();
   command->add_option("--from", arguments->from, "front, left, top or all")->capture_default_str();
   command->add_option("--size", arguments->size, "WIDTHxHEIGHT in pixels of each view")
       ->capture_default_str();
   command
-      ->add_option("--up",
-                   arguments->up,
-                   "axis of the world that points up; else found from floors and tables, where the "
-                   "cameras of the run, or without them y down, tell it roughly")
+      ->add_option(
+          "--up",
+          arguments->up,
+          "axis of the world frame that points up; by default found from floors and tables, "
+          "starting from the cameras of the run, or from y down")
       ->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}));
-  command->add_option("--name", arguments->names, "of a map, as caption; repeatable, in order")
+  command->add_option("--name", arguments->names, "caption of a map; repeatable, in order")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command->add_option("--groundtruth",
-                      arguments->groundtruth,
-                      "trajectory that brings maps of several runs, and truth, into one frame");
+  command->add_option(
+      "--groundtruth",
+      arguments->groundtruth,
+      "trajectory that aligns maps of several runs, and truth, in one coordinate frame");
   command->footer(
       "Examples:\n"
       "  stillmap view result/map.ply --out map.png\n"

@@ -2,7 +2,6 @@
 #include "stillmap/config/config_io.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include <fmt/core.h>
 
@@ -13,7 +12,7 @@
 namespace stillmap {
 namespace {
 
-// Double quotes, the one YAML style that can hold any text.
+// Text in double quotes, the only YAML style that can hold any text.
 std::string yaml_quoted(std::string_view text) {
   std::string yaml = "\"";
   for (const char c : text) {
@@ -48,10 +47,10 @@ std::string comment_of(const FieldInfo& info) {
   return fmt::format("{} ({})", info.meaning, info.unit);
 }
 
-// One line a field, and one for each group where it begins.
+// One line per field, and one at the beginning of each group.
 std::vector<YamlLine> yaml_lines(std::span<const FieldRef> fields) {
   std::vector<YamlLine> lines;
-  std::vector<std::string_view> open;  // the groups the last line is in
+  std::vector<std::string_view> open;  // the groups of the line before
   for (const FieldRef& field : fields) {
     std::vector<std::string_view> groups = split_key(field.key);
     const std::string_view name = groups.back();
@@ -68,25 +67,6 @@ std::vector<YamlLine> yaml_lines(std::span<const FieldRef> fields) {
     open = std::move(groups);
   }
   return lines;
-}
-
-using TableRow = std::array<std::string, 5>;
-
-std::string format_table(const std::vector<TableRow>& rows) {
-  std::array<std::size_t, 5> widths{};
-  for (const TableRow& row : rows) {
-    for (std::size_t column = 0; column < row.size(); ++column) {
-      widths[column] = std::max(widths[column], row[column].size());
-    }
-  }
-  std::string table;
-  for (const TableRow& row : rows) {
-    for (std::size_t column = 0; column + 1 < row.size(); ++column) {
-      table += fmt::format("{:<{}}  ", row[column], widths[column]);
-    }
-    table += row.back() + '\n';
-  }
-  return table;
 }
 
 }  // namespace
@@ -122,26 +102,13 @@ std::string dump_yaml(std::span<const FieldRef> fields) {
   const std::vector<YamlLine> lines = yaml_lines(fields);
   std::size_t width = 0;
   for (const YamlLine& line : lines) width = std::max(width, line.text.size());
-  width = std::min<std::size_t>(width, 40);  // the few long lines stick out
+  width = std::min<std::size_t>(width, 40);  // the few longer lines are not aligned
   std::string yaml;
   for (const YamlLine& line : lines) {
     yaml += line.comment.empty() ? line.text + '\n'
                                  : fmt::format("{:<{}}  # {}\n", line.text, width, line.comment);
   }
   return yaml;
-}
-
-std::string describe(std::span<const FieldRef> fields) {
-  std::vector<TableRow> rows = {{"KEY", "DEFAULT", "UNIT", "ALLOWED", "MEANING"}};
-  for (const FieldRef& field : fields) {
-    const std::string value = format_value(field);
-    rows.push_back({field.key,
-                    value.empty() ? "\"\"" : value,
-                    std::string(field.info.unit),
-                    allowed_values(field),
-                    std::string(field.info.meaning)});
-  }
-  return format_table(rows);
 }
 
 }  // namespace stillmap

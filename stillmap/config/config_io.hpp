@@ -14,15 +14,15 @@
 
 namespace stillmap {
 
-/// One configuration value in place: where it is stored, and what is known of it. It points into
-/// the struct it was listed from and must not outlive it.
+/// A setting in place: its full name, its storage and its documentation. It points into the struct
+/// that it was listed from and must not outlive it.
 struct FieldRef {
-  std::string key;  ///< full name, groups joined by dots: "tracking.features"
+  std::string key;  ///< groups and name joined by dots: "tracking.features"
   std::variant<bool*, int*, std::uint32_t*, double*, std::string*> value;
   FieldInfo info;
 };
 
-/// The visitor that turns a struct's `fields` (see core/fields.hpp) into a flat list.
+/// The visitor that turns the `fields` of a struct (see core/fields.hpp) into a flat list.
 class FieldLister {
  public:
   template <class T>
@@ -45,7 +45,7 @@ class FieldLister {
   std::vector<FieldRef> fields_;
 };
 
-/// All values of a configuration struct in the order it names them.
+/// All settings of a configuration struct, in the order in which its `fields` name them.
 template <class Config>
 [[nodiscard]] std::vector<FieldRef> list_fields(Config& config) {
   FieldLister lister;
@@ -54,17 +54,17 @@ template <class Config>
 }
 
 /// Sets the values that a YAML file names; groups are nested maps. Throws Error naming file, line
-/// and key for anything but a correct file: an unknown or repeated key, a value of the wrong type
-/// or out of its range, a construct other than nested maps of scalars, more than 1 MiB. The values
-/// read before the mistake are set by then.
+/// and key for an unknown or repeated key, a value of the wrong type or out of its range, a
+/// construct other than nested maps of scalars, or a file of more than 1 MiB. Values read before
+/// the mistake stay set.
 void load_yaml(std::span<const FieldRef> fields, const std::filesystem::path& file);
 
-/// The same from the text of such a file; `name` stands for the file's in messages.
+/// load_yaml for the text of such a file. Messages call the file `name`.
 void load_yaml_text(std::span<const FieldRef> fields,
                     std::string_view text,
                     const std::string& name);
 
-/// Sets one value from the "key=value" of the command line's --set, as strictly as load_yaml.
+/// Sets one value from a text "key=value", as strictly as load_yaml.
 void set_value(std::span<const FieldRef> fields, std::string_view assignment);
 
 /// Sets one value from its text. `where` begins the messages.
@@ -76,10 +76,15 @@ void set_value(std::span<const FieldRef> fields,
 /// The value of a key as text. Throws Error for an unknown key.
 [[nodiscard]] std::string value_text(std::span<const FieldRef> fields, std::string_view key);
 
-/// The current values as YAML with a comment on each line. load_yaml reads back the same bits.
+/// The current values as YAML, with the meaning of each as a comment. load_yaml reads the same bits
+/// back.
 [[nodiscard]] std::string dump_yaml(std::span<const FieldRef> fields);
 
-/// A table for people: key, current value, unit, what is allowed, meaning.
+/// The settings that people change (FieldInfo::common), in the order given.
+[[nodiscard]] std::vector<FieldRef> common_fields(std::span<const FieldRef> fields);
+
+/// A table for people: for each setting a line with key, value, unit and allowed values, and its
+/// meaning on indented lines. Lines have at most 100 characters.
 [[nodiscard]] std::string describe(std::span<const FieldRef> fields);
 
 }  // namespace stillmap

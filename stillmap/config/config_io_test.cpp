@@ -8,6 +8,8 @@
 #include <fstream>
 #include <limits>
 #include <random>
+#include <span>
+#include <sstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -225,22 +227,62 @@ TEST(DumpYaml, AnyTextStaysOneLoadableText) {
   }
 }
 
+TEST(CommonFields, AreThoseMarked) {
+  Config config;
+  std::vector<std::string> keys;
+  for (const FieldRef& field : common_fields(list_fields(config))) keys.push_back(field.key);
+  EXPECT_THAT(keys, ElementsAre("seed", "tracking.features"));
+}
+
 TEST(Describe, AlignsColumns) {
   test::TrackingConfig config;
   EXPECT_EQ(describe(list_fields(config)),
-            "KEY             DEFAULT  UNIT  ALLOWED       MEANING\n"
-            "features        1000           100 to 10000  corners a frame\n"
-            "max_depth_m     6        m     0.1 to 20     farthest depth used\n"
-            "loop.enabled    true           true, false   close loops\n"
-            "loop.min_score  0.25           0 to 1        similarity that suffices\n");
+            "KEY             VALUE  ALLOWED\n"
+            "features        1000   100 to 10000\n"
+            "    corners a frame\n"
+            "max_depth_m     6 m    0.1 to 20\n"
+            "    farthest depth used\n"
+            "loop.enabled    true   true, false\n"
+            "    close loops\n"
+            "loop.min_score  0.25   0 to 1\n"
+            "    similarity that suffices\n");
 }
 
 TEST(Describe, ShowsChoicesAndEmptyTexts) {
   Config config;
   const std::string text = describe(list_fields(config));
   EXPECT_THAT(text, HasSubstr("off, full"));
-  EXPECT_THAT(text, HasSubstr("note                     \"\""));
+  EXPECT_THAT(text, HasSubstr("note                     \"\"\n"));
   EXPECT_THAT(text, HasSubstr("at least 0"));
+}
+
+// Whatever the lengths of value, meaning and choices, lines stay within 100 characters, and all
+// words are there in their order.
+TEST(Describe, WrapsLongTexts) {
+  const std::vector<std::string> words = {"mask", "person", "wine-glass", "a", "0.25", "b,"};
+  std::mt19937 random(5);
+  const auto text_of = [&](std::size_t count) {
+    std::string text = "x";
+    for (std::size_t i = 1; i < count; ++i) text += " " + words[random() % words.size()];
+    return text;
+  };
+  for (int round = 0; round < 300; ++round) {
+    std::string value = text_of(1 + random() % 60);
+    const std::string meaning = text_of(1 + random() % 60);
+    FieldRef field{"group.key", &value, {meaning}};
+    field.info.choices.assign(random() % 30, "choice");
+    const std::string table = describe(std::span(&field, 1));
+    std::istringstream lines(table);
+    std::string flat;
+    for (std::string line; std::getline(lines, line);) {
+      EXPECT_LE(line.size(), 100U) << table;
+      EXPECT_FALSE(line.ends_with(' ')) << table;
+      std::istringstream in_line(line);
+      for (std::string word; in_line >> word;) flat += word + " ";
+    }
+    EXPECT_THAT(flat, HasSubstr(meaning + " "));
+    EXPECT_THAT(flat, HasSubstr(value + " "));
+  }
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ bool is_in_group(const FieldRef& field, std::string_view group) {
          field.key[group.size()] == '.';
 }
 
-// The keys and groups directly inside a group ("" is the whole configuration), by full name.
+// The full names of the keys and groups directly inside a group; "" is the whole configuration.
 std::vector<std::string> members(std::span<const FieldRef> fields, std::string_view group) {
   std::vector<std::string> names;
   for (const FieldRef& field : fields) {

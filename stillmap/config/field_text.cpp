@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kShownBytes = 60;
 
-// A whole text as a number; nothing when it is not one or does not fit.
+// A whole text as a number. Nothing when it is no number or does not fit the type.
 template <class Number>
 std::optional<Number> parse_number(std::string_view text) {
   if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
@@ -29,8 +29,8 @@ std::optional<Number> parse_number(std::string_view text) {
   return number;
 }
 
-// A number of a field's type within its range; nothing when the text is none. NaN and infinity
-// are in no range.
+// A number of the field's type within the field's range. Nothing for any other text. NaN and
+// infinity are in no range.
 template <class Number>
 std::optional<Number> parse_in_range(std::string_view text, const FieldInfo& info) {
   const std::optional<Number> number = parse_number<Number>(text);
@@ -45,7 +45,7 @@ struct Bounds {
   std::optional<double> max;
 };
 
-// The bounds that someone set, or that an unsigned type brings.
+// The bounds that the field sets, or that an unsigned type implies.
 Bounds bounds(const FieldRef& field) {
   Bounds result;
   const bool is_unsigned = std::holds_alternative<std::uint32_t*>(field.value);

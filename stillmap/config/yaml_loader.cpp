@@ -25,7 +25,7 @@ namespace {
 
 constexpr std::size_t kMaxBytes = 1U << 20U;
 
-// At most one byte more than is allowed.
+// Reads at most one byte more than is allowed.
 std::string read_capped(const std::filesystem::path& file) {
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored)) {
@@ -47,7 +47,7 @@ std::string read_capped(const std::filesystem::path& file) {
   throw Error("{}:{}: {}", file, 1 + std::ranges::count(before, '\n'), text);
 }
 
-// Refuses what the parser would pass over in silence: bytes that are no text, and directives.
+// Refuses input that the parser would silently accept: bytes that are no text, and directives.
 void check_text(const std::string& file, std::string_view text) {
   const std::size_t good = text_prefix(text);
   if (good != text.size()) {
@@ -63,14 +63,14 @@ void check_text(const std::string& file, std::string_view text) {
   }
 }
 
-// The parser notices a quote that is never closed only when no line end follows.
+// The parser detects an unclosed quote only when no line end follows.
 std::string without_end_space(std::string text) {
   text.erase(text.find_last_not_of(" \t\r\n") + 1);
   return text;
 }
 
-// Sets fields as the parser meets them. Working on events instead of yaml-cpp's nodes keeps every
-// line number, sees repeated keys, and ends hostile input at its first odd construct.
+// Sets fields during parsing. Events, unlike yaml-cpp's nodes, have every line number, show
+// repeated keys, and end hostile input at its first unsupported construct.
 class FieldSetter final : public YAML::EventHandler {
  public:
   FieldSetter(std::span<const FieldRef> fields, std::string file)
@@ -172,9 +172,9 @@ class FieldSetter final : public YAML::EventHandler {
 
   std::span<const FieldRef> fields_;
   std::string file_;
-  std::vector<std::string> groups_;  // the open maps, outermost "" first
-  std::optional<std::string> key_;   // read, its value is next
-  YAML::Mark key_mark_;              // nothing has no place of its own
+  std::vector<std::string> groups_;  // the open maps from the outermost, ""
+  std::optional<std::string> key_;   // the key that was read; its value is next
+  YAML::Mark key_mark_;              // for values without a position of their own
   std::set<std::string> seen_;
   bool started_ = false;
 };

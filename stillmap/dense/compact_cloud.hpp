@@ -12,13 +12,13 @@
 
 namespace stillmap {
 
-/// A cloud in some 60 % of the memory: coordinates have 16 bits each over the cloud's extent, 0.1
-/// mm where that is 6 m. `places` and `colors` have equal length; `labels` is empty or of that
-/// length too.
+/// A cloud in about 60 % of the memory of a PointCloud: each coordinate has 16 bits over the
+/// cloud's extent, 0.1 mm for 6 m. `places` and `colors` have equal length; `labels` is empty or
+/// has that length, too.
 struct CompactCloud {
   Eigen::Vector3f origin = Eigen::Vector3f::Zero();  ///< least coordinates, metres
   Eigen::Vector3f step = Eigen::Vector3f::Zero();    ///< metres
-  std::vector<std::array<std::uint16_t, 3>> places;  ///< in steps from the origin
+  std::vector<std::array<std::uint16_t, 3>> places;  ///< positions, in steps from the origin
   std::vector<Rgb> colors;
   std::vector<std::uint8_t> labels;  ///< class of the surface, 0 = none
 
@@ -30,8 +30,8 @@ struct CompactCloud {
   }
 };
 
-/// Each coordinate to half a step, a step being 1/65535 of the cloud's extent along its axis.
-/// Positions are finite; normals are left out.
+/// Compacts a cloud. Coordinates are accurate to half a step; a step is 1/65535 of the cloud's
+/// extent along the axis. Positions must be finite; normals are dropped.
 [[nodiscard]] CompactCloud compact(const PointCloud& cloud);
 
 }  // namespace stillmap

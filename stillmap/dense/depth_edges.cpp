@@ -11,8 +11,8 @@ namespace {
 
 constexpr float kFar = std::numeric_limits<float>::max();
 
-/// Two rows' nearest and farthest depth in each column; kFar and 0 where both are missing. One
-/// column more than the image has: what lies beyond it is missing.
+/// The least and the greatest depth of two rows, for each column; kFar and 0 where both are
+/// missing. There is one column more than in the image, in which depth is missing.
 struct ColumnRange {
   std::vector<float> nearest, farthest;
 };
@@ -20,7 +20,7 @@ struct ColumnRange {
 void set_range(ColumnRange& range, const float* upper, const float* lower, std::size_t columns) {
   float* nearest = range.nearest.data();
   float* farthest = range.farthest.data();
-  for (std::size_t x = 0; x < columns; ++x) {  // without a branch, so that it runs on vectors
+  for (std::size_t x = 0; x < columns; ++x) {  // branch-free, so that it vectorises
     const float a = upper[x], b = lower[x];
     const bool has_a = a > 0 && a<kFar, has_b = b> 0 && b < kFar;
     nearest[x] = std::min(has_a ? a : kFar, has_b ? b : kFar);

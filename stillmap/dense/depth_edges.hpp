@@ -16,23 +16,22 @@ struct DepthEdgesConfig {
     visit("step_m",
           self.step_m,
           FieldInfo{
-              "depths of neighbours that differ more are an edge (tau3 of Fan 2020)", "m", 0, 100});
+              "depth difference of neighbours that makes an edge (tau3 of Fan 2020)", "m", 0, 100});
     visit("step_per_m",
           self.step_per_m,
-          FieldInfo{
-              "growing: an edge differs more than this times depth squared, too", "1/m", 0, 10});
+          FieldInfo{"growing: least depth difference at an edge, per depth squared", "1/m", 0, 10});
   }
 };
 
-/// A copy of a depth image (metres) without its discontinuities (Fan 2020, Eqs. (11)-(12)).
+/// A copy of a depth image (metres) without its edges (Fan 2020, section III-D, Eqs. (11)-(12)).
 ///
-/// In each window of 2 by 2 pixels, the upper left one becomes 0 when the window's greatest and
-/// least depth differ by more than max(step_m, step_per_m z^2), z being the least. Missing depth
-/// (0, negative, not finite) is no discontinuity, and neither is what lies beyond the image.
-/// Neighbours in a row or a column that both are left differ by no more than that.
+/// In each window of 2 by 2 pixels, the upper left pixel becomes 0 when the greatest and the least
+/// depth of the window differ by more than max(step_m, step_per_m z^2), where z is the least.
+/// Missing depth (0, negative, not finite) and the border of the image make no edge. Two neighbours
+/// in a row or a column that both remain differ by no more than that.
 ///
-/// The paper's threshold is fixed: step_per_m = 0. But the noise of a structured-light camera grows
-/// with depth squared, so that a fixed one takes the farther walls apart.
+/// The threshold of the article is fixed: step_per_m = 0. The noise of a structured-light camera
+/// grows with depth squared, so that a fixed threshold removes pixels of far walls.
 [[nodiscard]] cv::Mat1f without_edges(const cv::Mat1f& depth, const DepthEdgesConfig& config);
 
 }  // namespace stillmap

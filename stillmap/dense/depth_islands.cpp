@@ -10,18 +10,18 @@
 namespace stillmap {
 namespace {
 
-/// Pixels of a row with depth, without a gap: columns begin to end - 1.
+/// Consecutive pixels of a row with depth: columns begin to end - 1.
 struct Run {
   int row, begin, end;
-  std::uint32_t patch;   // a run of the same patch; its own index for one run a patch
-  std::uint32_t pixels;  // of the whole patch, where `patch` is its own index
+  std::uint32_t patch;   // index of a run of the same patch; of itself for the root of the patch
+  std::uint32_t pixels;  // of the whole patch, at its root
 };
 
-/// The runs of an image, joined to patches.
+/// The runs of an image, joined to patches (union-find).
 class Patches {
  public:
   explicit Patches(const cv::Mat1f& depth) {
-    std::size_t above = 0;  // where the row above begins
+    std::size_t above = 0;  // first run of the row above
     for (int row = 0; row < depth.rows; ++row) {
       const std::size_t first = runs_.size();
       append_runs(depth, row);
@@ -32,7 +32,7 @@ class Patches {
 
   [[nodiscard]] std::size_t size() const { return runs_.size(); }
   [[nodiscard]] const Run& run(std::size_t i) const { return runs_[i]; }
-  /// Of the patch that run i belongs to.
+  /// The number of pixels of the patch of run i.
   [[nodiscard]] std::uint32_t pixels(std::size_t i) {
     return runs_[find(static_cast<std::uint32_t>(i))].pixels;
   }
@@ -52,7 +52,8 @@ class Patches {
     }
   }
 
-  /// Joins runs of two rows that share a column: `above` to `first` - 1 and `first` to the end.
+  /// Joins the runs of two rows that share a column: runs `above` to `first` - 1, and `first` to
+  /// the end.
   void join(std::size_t above, std::size_t first) {
     std::size_t a = above, b = first;
     while (a < first && b < runs_.size()) {

@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kBatch = 256;
 constexpr float kNearest = 0.05F;
 
-/// Of the rays through the image's corners and the middles of its sides.
+/// The rays through the corners of the image and the middles of its sides.
 double greatest_slope_squared(const CameraModel& camera) {
   double greatest = 0;
   for (const double x : {0.0, 0.5, 1.0}) {
@@ -30,11 +30,11 @@ double greatest_slope_squared(const CameraModel& camera) {
   return greatest;
 }
 
-/// Points that are near each other, if they come so.
+/// Consecutive points, which are mostly near each other.
 struct Batch {
   std::array<float, kBatch> x{}, y{}, z{};
   Eigen::Vector3f center = Eigen::Vector3f::Zero();
-  float radius = 0;  // of a ball around the centre that has them all
+  float radius = 0;  // of the ball around the centre that contains them all
 };
 
 Batch make_batch(std::span<const Eigen::Vector3f> points) {
@@ -51,7 +51,7 @@ Batch make_batch(std::span<const Eigen::Vector3f> points) {
   return batch;
 }
 
-/// Raw pixels and depths of some points in a camera.
+/// The raw pixels and depths of a batch of points in a camera.
 struct Projected {
   std::array<float, kBatch> u, v, z;
 };
@@ -62,7 +62,7 @@ class Projector {
       : T_(T_camera_world.matrix().topRows<3>().cast<float>()),
         fx_(static_cast<float>(camera.fx)),
         fy_(static_cast<float>(camera.fy)),
-        cx_(static_cast<float>(camera.cx + 0.5)),  // to truncate is then to round
+        cx_(static_cast<float>(camera.cx + 0.5)),  // makes truncation round
         cy_(static_cast<float>(camera.cy + 0.5)),
         k1_(static_cast<float>(camera.k1)),
         k2_(static_cast<float>(camera.k2)),
@@ -71,10 +71,10 @@ class Projector {
         p2_(static_cast<float>(camera.p2)),
         max_r2_(static_cast<float>(1.1 * greatest_slope_squared(camera))) {}
 
-  /// Whether none of the points can be in the image.
+  /// Whether certainly none of the points is in the image.
   [[nodiscard]] bool misses(const Batch& batch) const {
     const Eigen::Vector3f p = T_.leftCols<3>() * batch.center + T_.col(3);
-    // Its distance from the cone around the optical axis that has all of the image in it.
+    // The distance of the centre from the cone around the optical axis that contains the image.
     const float outside = p.head<2>().norm() - std::sqrt(max_r2_) * p.z();
     return outside > batch.radius * std::sqrt(1.0F + max_r2_) || p.z() < kNearest - batch.radius;
   }
@@ -83,7 +83,7 @@ class Projector {
     const float a = T_(0, 0), b = T_(0, 1), c = T_(0, 2), d = T_(0, 3);
     const float e = T_(1, 0), f = T_(1, 1), g = T_(1, 2), h = T_(1, 3);
     const float i = T_(2, 0), j = T_(2, 1), k = T_(2, 2), l = T_(2, 3);
-    for (std::size_t n = 0; n < kBatch; ++n) {  // without a branch, so that it runs on vectors
+    for (std::size_t n = 0; n < kBatch; ++n) {  // branch-free, so that it vectorises
       const float px = batch.x[n], py = batch.y[n], pz = batch.z[n];
       const float z = i * px + j * py + k * pz + l;
       const float inverse_z = 1.0F / std::max(z, kNearest);
@@ -91,7 +91,8 @@ class Projector {
       const float y = (e * px + f * py + g * pz + h) * inverse_z;
       const float r2 = x * x + y * y;
       const float radial = 1 + r2 * (k1_ + r2 * (k2_ + r2 * k3_));
-      // Far outside of the image the polynomial means nothing, and may lead back into it.
+      // Far outside the image the distortion polynomial is meaningless and may lead back into the
+      // image.
       const float far = r2 < max_r2_ ? 0.0F : -1e6F;
       out.u[n] = fx_ * (x * radial + 2 * p1_ * x * y + p2_ * (r2 + 2 * x * x)) + cx_ + far;
       out.v[n] = fy_ * (y * radial + p1_ * (r2 + 2 * y * y) + 2 * p2_ * x * y) + cy_;
@@ -121,7 +122,7 @@ void add_through(Sightings& s) {
   s.seen_last = 0;
 }
 
-/// Compares points with the range that one view has measured.
+/// Compares points with the range image of one view.
 class RangeCheck {
  public:
   RangeCheck(const RangeImage& range, const CameraModel& camera, const FreeSpaceConfig& config)
@@ -153,7 +154,7 @@ class RangeCheck {
     }
   }
 
-  /// Counts in `beside`.
+  /// Counts `Sightings::beside`.
   void look_beside(const Projected& at, std::span<Sightings> sightings) const {
     for (std::size_t n = 0; n < sightings.size(); ++n) {
       const float z = at.z[n];
@@ -164,10 +165,10 @@ class RangeCheck {
   }
 
  private:
-  /// Unknown out of the image.
+  /// The cell of a raw pixel; unknown outside the image.
   [[nodiscard]] RangeCell cell_at(float u, float v) const {
     if (!(u >= 0 && v >= 0 && u < width_ && v < height_)) return {};
-    // Just below the border the product may round up to it.
+    // Just inside the border the product may round up to the border.
     return range_.at(std::min(static_cast<int>(v * scale_), range_.rows - 1),
                      std::min(static_cast<int>(u * scale_), range_.columns - 1));
   }
@@ -176,7 +177,7 @@ class RangeCheck {
     return std::abs(cell.range_m() - z) <= margin_ + growth_ * z * z;
   }
 
-  /// In eight directions, at three distances: what moves is larger than the gaps.
+  /// Looks in eight directions at three distances. Moving objects are larger than the gaps.
   [[nodiscard]] bool moves_beside(float u, float v, float z) const {
     for (const float share : {0.25F, 0.5F, 1.0F}) {
       const float straight = share * beside_px_, slanting = straight * 0.7F;
@@ -216,8 +217,8 @@ std::vector<View> views_of(std::span<const PosedRange> ranges,
   return views;
 }
 
-/// Calls `check(range check, where the points fall, their sightings)` for each view and batch;
-/// batches are dealt out to threads in turn.
+/// Calls `check(range check, projected points, their sightings)` for each view and batch. Threads
+/// take batches in turn.
 template <class Check>
 void for_each_batch(std::span<const Eigen::Vector3f> points,
                     std::span<Sightings> all,
@@ -255,7 +256,7 @@ std::vector<Sightings> sightings(std::span<const Eigen::Vector3f> points,
                  [](const RangeCheck& range, const Projected& at, std::span<Sightings> some) {
                    range.update(at, some);
                  });
-  // The weakly seen are few: only for them it is worth to look around in the images.
+  // Only the weakly seen points, which are few, need the slower search around them.
   std::vector<std::size_t> weak;
   std::vector<Eigen::Vector3f> weak_points;
   std::vector<Sightings> weak_sightings;

@@ -31,74 +31,85 @@ struct FreeSpaceConfig {
   static void fields(Self& self, Visitor& visit) {
     visit("cell_m",
           self.cell_m,
-          FieldInfo{"points of a cube with this edge are judged together", "m", 0.001, 1});
+          FieldInfo{"edge of the cubes whose points are judged together", "m", 0.001, 1});
     visit(
         "margin_m",
         self.margin_m,
-        FieldInfo{"a point is seen through when depth is measured this far behind it", "m", 0, 10});
+        FieldInfo{"distance behind a point at which a measured depth sees through it", "m", 0, 10});
     visit("margin_per_m",
           self.margin_per_m,
-          FieldInfo{"growth of that distance with depth squared", "1/m", 0, 1});
+          FieldInfo{"growth of margin_m with depth squared", "1/m", 0, 1});
     visit("min_through",
           self.min_through,
-          FieldInfo{"views that must see through a point, the last that tell of it", "", 1, 1000});
-    visit("min_stay",
-          self.min_stay,
-          FieldInfo{
-              "a point that was seen through stays when so many later views see it", "", 1, 255});
+          FieldInfo{"number of final views in a row seeing through a point that remove it if "
+                    "max_through_share holds",
+                    "",
+                    1,
+                    1000});
+    visit(
+        "min_stay",
+        self.min_stay,
+        FieldInfo{
+            "number of views after the last one seeing through a point that keep it", "", 1, 255});
     visit("max_through_share",
           self.max_through_share,
           FieldInfo{
-              "or when no more than this many see through it for each that sees it", "", 0, 10});
+              "greatest ratio of views that see through a point to views that see it", "", 0, 10});
     visit("max_moving_share",
           self.max_moving_share,
-          FieldInfo{"it goes when more than this many take it for what moves for each that sees it",
+          FieldInfo{"greatest ratio of views that see motion at a point to views that see it",
                     "",
                     0,
                     1000});
     visit("weakly_seen",
           self.weakly_seen,
-          FieldInfo{"a point that no more than this many see goes when one of them sees what moves "
-                    "beside it",
+          FieldInfo{"number of views up to which a point is removed when one sees motion beside it",
                     "",
                     0,
                     255});
-    visit("beside_share",
-          self.beside_share,
-          FieldInfo{"beside: so near in the image, as a share of its width", "", 0, 1});
-    visit("beside_m", self.beside_m, FieldInfo{"and so near in depth", "m", 0, 10});
+    visit(
+        "beside_share",
+        self.beside_share,
+        FieldInfo{"greatest distance of that motion in the image, as a share of the image's width",
+                  "",
+                  0,
+                  1});
+    visit("beside_m",
+          self.beside_m,
+          FieldInfo{"greatest distance of that motion in depth", "m", 0, 10});
   }
 };
 
-/// What a view knows of the space before it.
+/// The range image of a view with the view's pose.
 struct PosedRange {
   Eigen::Isometry3d T_world_camera;
   const RangeImage* range;  ///< not null; not owned
 };
 
-/// What views, in the order of their time, tell of a point. Counts end at 255.
+/// How views, in the order of their time, see a point. Counts saturate at 255.
 struct Sightings {
-  std::uint8_t seen = 0;       ///< views that measure it
-  std::uint8_t moving = 0;     ///< that measure something at its place which moves
-  std::uint8_t beside = 0;     ///< that measure it beside what moves; only for weakly seen points
-  std::uint8_t through = 0;    ///< that see through it
-  std::uint8_t seen_last = 0;  ///< that measure it after the last that sees through it
-  std::uint8_t through_last = 0;  ///< that see through it after the last that measures it
+  std::uint8_t seen = 0;    ///< views that measure the point
+  std::uint8_t moving = 0;  ///< views that measure a moving object at the point
+  std::uint8_t beside =
+      0;  ///< views with a moving object beside the point; weakly seen points only
+  std::uint8_t through = 0;       ///< views that see through the point
+  std::uint8_t seen_last = 0;     ///< views that measure it after the last one that sees through it
+  std::uint8_t through_last = 0;  ///< views that see through it after the last one that measures it
 };
 
-/// For each point (world), what the views tell of it. One that has the point out of view,
-/// hidden, or where its range is not known, tells nothing. The same with any number of threads.
+/// The sightings of each point (world frame, metres). A view in which the point is out of the
+/// image, hidden, or at an unknown range does not count. The same with any number of threads.
 [[nodiscard]] std::vector<Sightings> sightings(std::span<const Eigen::Vector3f> points,
                                                std::span<const PosedRange> ranges,
                                                const CameraModel& camera,
                                                const FreeSpaceConfig& config,
                                                std::size_t threads = 1);
 
-/// Whether a point is part of the static world as it is at the end.
+/// Whether a point belongs to the static world as it is at the end of the run.
 [[nodiscard]] bool stays(const Sightings& s, const FreeSpaceConfig& config);
 
-/// The points of a map that stay, by what the frames tell of them. Points of a cube of `cell_m`
-/// have one verdict: that of their mean. The same with any number of threads.
+/// The map without the points that sightings remove: those of moved objects. All points of a cube
+/// of edge `cell_m` share the decision for their mean. The same with any number of threads.
 [[nodiscard]] PointCloud without_moved(const PointCloud& map,
                                        std::span<const PosedRange> ranges,
                                        const CameraModel& camera,

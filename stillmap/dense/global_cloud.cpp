@@ -13,14 +13,14 @@
 namespace stillmap {
 namespace {
 
-/// A slice of the world between two faces of voxels, which are across the x axis.
+/// A slice of space between two planes of voxel faces perpendicular to the x axis.
 struct Slice {
   double begin, end;  // voxels
 
   [[nodiscard]] bool contains(double x) const { return x >= begin && x < end; }
 };
 
-/// Along x, in voxels; as VoxelGrid computes it, so that no voxel belongs to two slices.
+/// The x coordinate in voxels, computed as in VoxelGrid, so that no voxel belongs to two slices.
 double place(const Eigen::Vector3f& p_world, double voxel_size_m) {
   return static_cast<double>(p_world.x()) / voxel_size_m;
 }
@@ -29,11 +29,11 @@ Eigen::Vector3f to_world(const PosedCloud& posed, std::size_t i) {
   return (posed.T_world_camera * posed.cloud->position(i).cast<double>()).cast<float>();
 }
 
-/// Slices with about as many points each. What lies nowhere, for want of numbers, is in none.
+/// Slices with about equal numbers of points. A point with a NaN coordinate is in none.
 std::vector<Slice> slices(std::span<const PosedCloud> clouds,
                           double voxel_size_m,
                           std::size_t count) {
-  constexpr std::size_t kStep = 101;  // one point in so many tells where they are
+  constexpr std::size_t kStep = 101;  // every 101st point is sampled
   constexpr double kEverywhere = std::numeric_limits<double>::infinity();
   std::vector<double> places;
   for (const PosedCloud& posed : clouds) {
@@ -66,7 +66,7 @@ PointCloud cloud_in(const Slice& slice, std::span<const PosedCloud> clouds, doub
   return grid.extract();
 }
 
-/// A grid without labels gives a cloud without any, where they are all 0.
+/// A grid whose labels are all 0 gives a cloud without labels.
 void append(PointCloud& all, const PointCloud& part) {
   if (!part.labels.empty()) all.labels.resize(all.size(), 0);
   all.positions.insert(all.positions.end(), part.positions.begin(), part.positions.end());
@@ -87,7 +87,8 @@ PointCloud global_cloud(std::span<const PosedCloud> clouds,
     STILLMAP_CHECK(cloud.colors.size() == cloud.size());
     STILLMAP_CHECK(cloud.labels.empty() || cloud.labels.size() == cloud.size());
   }
-  // A voxel gets its points in the same order in any slice, and a grid gives voxels in order of x.
+  // A voxel gets its points in the same order in every slicing, and grids give voxels in order of
+  // x.
   const std::vector<Slice> all = slices(clouds, voxel_size_m, threads);
   std::vector<PointCloud> parts(all.size());
   in_parallel(all.size(),

@@ -11,15 +11,15 @@
 
 namespace stillmap {
 
-/// A view's cloud (see local_cloud) and where its camera is.
+/// The cloud of a view (see local_cloud) with the view's pose.
 struct PosedCloud {
   Eigen::Isometry3d T_world_camera;
   const CompactCloud* cloud;  ///< not null; not owned
 };
 
-/// The union of the clouds in world coordinates (Fan 2020, Eq. (1)), thinned to one point a voxel
-/// as VoxelGrid does it: mean position and colour, winning label. A cloud without labels has label
-/// 0 everywhere; normals are left out. The same bits with any number of threads.
+/// The union of the clouds in the world frame (Fan 2020, section III, Eq. (1)), thinned by
+/// VoxelGrid to one point per voxel: mean position and colour, winning label. A cloud without
+/// labels counts as label 0; normals are dropped. The same bits with any number of threads.
 [[nodiscard]] PointCloud global_cloud(std::span<const PosedCloud> clouds,
                                       double voxel_size_m,
                                       std::size_t threads = 1);

@@ -24,7 +24,7 @@ std::array<Histogram, kDigits> count_digits(const std::vector<IndexedKey>& keys)
   return counts;
 }
 
-/// Turns each bucket's count into the position of its first element.
+/// Replaces the count of each bucket by the position of its first element.
 Histogram first_positions(const Histogram& counts) {
   Histogram first{};
   for (std::size_t i = 1; i < kBuckets; ++i) first[i] = first[i - 1] + counts[i - 1];
@@ -38,7 +38,8 @@ std::vector<IndexedKey> sorted_by_key(std::vector<IndexedKey> keys) {
   const std::array<Histogram, kDigits> counts = count_digits(keys);
   std::vector<IndexedKey> sorted(keys.size());
   for (std::size_t place = 0; place < kDigits; ++place) {
-    if (counts[place][digit(keys[0].key, place)] == keys.size()) continue;  // all have this digit
+    if (counts[place][digit(keys[0].key, place)] == keys.size())
+      continue;  // all keys have this digit
     Histogram next = first_positions(counts[place]);
     for (const IndexedKey& item : keys) sorted[next[digit(item.key, place)]++] = item;
     keys.swap(sorted);

@@ -11,7 +11,7 @@ struct IndexedKey {
   std::uint32_t index = 0;
 };
 
-/// Sorted by key in linear time, equal keys in the order given.
+/// The keys in ascending order; equal keys stay in the order given. Takes linear time (radix sort).
 [[nodiscard]] std::vector<IndexedKey> sorted_by_key(std::vector<IndexedKey> keys);
 
 }  // namespace stillmap

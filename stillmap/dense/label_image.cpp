@@ -18,7 +18,7 @@ struct LabelRule {
 };
 
 LabelRule rule_for(const TrackedObject& object, const ObjectState& state) {
-  // A box in place of a mask has much around the object in it.
+  // A box used as a mask contains too much around its object.
   const bool known = object.mask_source != MaskSource::kBox && state.depths.has_value();
   if (state.dynamic || !known) return {};
   return {class_label(object.detection.class_name), *state.depths};

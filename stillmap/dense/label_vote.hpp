@@ -10,9 +10,9 @@ namespace stillmap {
 
 /// The label with the most votes, in twelve bytes (Misra and Gries 1982, four counters).
 ///
-/// Exact while at most four different labels got votes: the one with the most wins, the smaller one
-/// of two equals. With more labels one that got over half of all votes still wins; without such
-/// a majority any of the frequent ones may. The sum of all weights must stay below 65536.
+/// Exact for up to four different labels: the label with the most votes wins, the smaller one of
+/// equals. With more labels a label with more than half of all votes still wins; without such a
+/// majority any frequent label may win. The sum of all weights must stay below 65536.
 class LabelVote {
  public:
   void add(std::uint8_t label, std::uint16_t weight) {
@@ -20,7 +20,7 @@ class LabelVote {
       *own = static_cast<std::uint16_t>(*own + weight);
       return;
     }
-    // A fifth label: it and the four others cancel each other out, until one of them is gone.
+    // A fifth label: it and the four others cancel each other until one of the five has no votes.
     const std::uint16_t cancelled = std::min(*std::ranges::min_element(votes_), weight);
     for (std::uint16_t& votes : votes_) votes = static_cast<std::uint16_t>(votes - cancelled);
     if (weight > cancelled) {
@@ -28,7 +28,7 @@ class LabelVote {
     }
   }
 
-  /// 0 when nothing got votes.
+  /// The winning label; 0 without votes.
   [[nodiscard]] std::uint8_t winner() const {
     std::size_t best = 0;
     for (std::size_t i = 1; i < votes_.size(); ++i) {
@@ -39,7 +39,7 @@ class LabelVote {
   }
 
  private:
-  /// The label's counter, else a free one, which is then the label's; null when all four are taken.
+  /// The counter of the label, else a free counter, which it takes; null when all four are taken.
   std::uint16_t* counter_of(std::uint8_t label) {
     std::uint16_t* free = nullptr;
     std::size_t free_index = 0;

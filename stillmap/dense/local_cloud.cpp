@@ -14,9 +14,9 @@ namespace stillmap {
 namespace {
 
 constexpr float kSteepest = 1e3F;
-constexpr std::uint32_t kMostVotes = 65535;  // what a LabelVote can count
+constexpr std::uint32_t kMostVotes = 65535;  // the greatest sum of weights of a LabelVote
 
-/// Sums over the pixels of a cell that are a point.
+/// Sums over the pixels of one point.
 struct PointSum {
   std::uint32_t count = 0;
   Eigen::Vector3f position = Eigen::Vector3f::Zero();
@@ -47,7 +47,7 @@ struct Images {
   const cv::Mat1b& labels;
 };
 
-/// Makes the points of one cell after another.
+/// Makes the points cell by cell.
 class CellPoints {
  public:
   CellPoints(const Images& images, const LocalCloudConfig& config)
@@ -70,7 +70,7 @@ class CellPoints {
     const cv::Vec2f* ray = images_.rays[row];
     const cv::Vec3b* rgb = images_.color[row];
     for (int x = cell.x; x < cell.x + cell.width; ++x) {
-      // A ray too steep for a lens is one that its distortion does not tell.
+      // A ray too steep for a lens comes from a distortion that could not be inverted.
       const bool known = std::abs(ray[x][0]) < kSteepest && std::abs(ray[x][1]) < kSteepest;
       if (!(z[x] > 0 && known)) continue;
       PointSum& point = point_at(z[x]);
@@ -81,7 +81,7 @@ class CellPoints {
     }
   }
 
-  /// The point that a pixel of this depth joins. Most cells have one or two.
+  /// The point that a pixel of this depth joins. Most cells have one or two points.
   PointSum& point_at(float z) {
     const float reach = growth_ * (z + offset_) * (z + offset_);
     for (std::size_t i = points_.size(); i-- > 0;) {

@@ -13,7 +13,7 @@ namespace {
 constexpr double kReach = 1 << 20;  // cells
 constexpr std::uint64_t kNowhere = std::numeric_limits<std::uint64_t>::max();
 
-/// Puts two zeros after each of the lowest 21 bits.
+/// Inserts two zero bits after each of the lowest 21 bits.
 std::uint64_t spread_bits(std::uint64_t x) {
   x = (x | x << 32U) & 0x001f00000000ffffU;
   x = (x | x << 16U) & 0x001f0000ff0000ffU;

@@ -19,31 +19,34 @@ struct RangeImageConfig {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
+    visit("block_px",
+          self.block_px,
+          FieldInfo{"edge of the square pixel blocks of a range image", "px", 1, 64});
     visit(
-        "block_px",
-        self.block_px,
-        FieldInfo{"how far is seen is kept for square blocks of pixels of this side", "px", 1, 64});
-    visit("rim_blocks",
-          self.rim_blocks,
-          FieldInfo{"it is the least over so many blocks on each side", "", 0, 16});
+        "rim_blocks",
+        self.rim_blocks,
+        FieldInfo{"number of neighbouring blocks on each side that a block's least range includes",
+                  "",
+                  0,
+                  16});
     visit(
         "max_missing",
         self.max_missing,
-        FieldInfo{"nothing is known of a block that lacks depth in more of its pixels", "", 0, 1});
+        FieldInfo{"share of missing depth above which the range of a block is unknown", "", 0, 1});
   }
 };
 
-/// What a block of pixels measures. Two bytes.
+/// The range that a block of pixels measures, in two bytes.
 class RangeCell {
  public:
-  RangeCell() = default;  ///< nothing
-  /// Up to 65 m; what is farther counts as 65 m.
+  RangeCell() = default;  ///< unknown
+  /// `range_m` is clamped to 65 m.
   RangeCell(float range_m, bool moving);
 
   [[nodiscard]] bool known() const { return bits_ != 0; }
-  /// Whether it measures what moves.
+  /// Whether the block measures a moving object.
   [[nodiscard]] bool moving() const { return (bits_ & kMoving) != 0; }
-  /// To 2 mm.
+  /// The range, rounded to 2 mm.
   [[nodiscard]] float range_m() const { return static_cast<float>(bits_ & ~kMoving) * kUnit_m; }
 
  private:
@@ -52,7 +55,7 @@ class RangeCell {
   std::uint16_t bits_ = 0;
 };
 
-/// How far a frame has seen for certain, for each block of pixels.
+/// The range of certain free space of a frame, for each block of pixels.
 struct RangeImage {
   int block_px = 1;
   int columns = 0, rows = 0;
@@ -64,18 +67,19 @@ struct RangeImage {
   }
 };
 
-/// What in a frame is not the static world. Images of its size, or empty.
+/// The pixels of a frame that are not static. Masks of its size, or empty.
 struct DynamicRegions {
-  Mask excluded;  ///< pixels whose depth says nothing of the static surface
-  Mask moving;    ///< pixels of what is known to move
+  Mask excluded;  ///< pixels whose depth is not used for the static surface
+  Mask moving;    ///< pixels of objects known to move
 };
 
-/// The least measured depth (metres) in and around each block: what is nearer is free space there.
+/// The least measured depth (metres) in and around each block: space nearer than that is free.
 ///
-/// That is on the safe side: the rim of something near is not seen through because a pixel beside
-/// it sees the wall behind. Nothing is known of a block where more than `max_missing` of the pixels
-/// have no depth, or of one with excluded pixels, except that something moves there: then it has
-/// the least depth of the pixels that move. Such blocks change nothing in those around them.
+/// The least depth is the safe choice: the rim of a near object is not seen through only because a
+/// pixel beside it sees the wall behind. The range of a block is unknown when more than
+/// `max_missing` of its pixels have no depth, or when it has excluded pixels. If some of these are
+/// moving, the block is marked as moving and has the least depth of its moving pixels. Such blocks
+/// do not affect the blocks around them.
 [[nodiscard]] RangeImage range_image(const cv::Mat1f& depth,
                                      const DynamicRegions& dynamic_regions,
                                      const RangeImageConfig& config);

@@ -11,7 +11,7 @@
 namespace stillmap {
 namespace {
 
-/// Depths over 0 and up to a limit, without the pixels of `excluded`.
+/// Depths over 0 and up to the limit, without the pixels of `excluded`.
 cv::Mat1f within(const cv::Mat1f& depth, const Mask& excluded, float max_depth_m) {
   cv::Mat1f kept(depth.size());
   const auto columns = static_cast<std::size_t>(depth.cols);
@@ -19,7 +19,7 @@ cv::Mat1f within(const cv::Mat1f& depth, const Mask& excluded, float max_depth_m
     const float* z = depth[row];
     float* out = kept[row];
     for (std::size_t x = 0; x < columns; ++x) {
-      out[x] = z[x] > 0 && z[x] <= max_depth_m ? z[x] : 0.0F;  // so written, NaN is left out too
+      out[x] = z[x] > 0 && z[x] <= max_depth_m ? z[x] : 0.0F;  // excludes NaN, too
     }
     if (excluded.empty()) continue;
     const std::uint8_t* left_out = excluded.mat[row];

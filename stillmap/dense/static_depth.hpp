@@ -22,11 +22,11 @@ struct StaticDepthConfig {
   static void fields(Self& self, Visitor& visit) {
     visit("max_depth_m",
           self.max_depth_m,
-          FieldInfo{"depth beyond this does not go into the map", "m", 0.1, 1000});
+          common_setting(FieldInfo{"greatest depth that goes into the dense map", "m", 0.1, 1000}));
     visit("edges",
           self.edges,
-          FieldInfo{"removal of depth edges: with the paper's threshold, or one that grows with "
-                    "depth; by_mode: as dynamics.mode has it",
+          FieldInfo{"removal of depth edges. fixed: by edge.step_m; growing: with depth, too; "
+                    "by_mode: as dynamics.mode says",
                     "",
                     0,
                     0,
@@ -34,23 +34,23 @@ struct StaticDepthConfig {
     visit.group("edge", self.edge);
     visit("islands",
           self.islands,
-          FieldInfo{"removal of small patches of depth; by_mode: as dynamics.mode has it",
+          FieldInfo{"removal of small patches of depth; by_mode: as dynamics.mode says",
                     "",
                     0,
                     0,
                     {"by_mode", "off", "on"}});
-    visit(
-        "min_island_share",
-        self.min_island_share,
-        FieldInfo{"patches smaller than this share of the image go (tau4 of Fan 2020)", "", 0, 1});
+    visit("min_island_share",
+          self.min_island_share,
+          FieldInfo{
+              "share of the image below which a patch is removed (tau4 of Fan 2020)", "", 0, 1});
   }
 };
 
-/// What of a depth image (metres) is static surface near enough for the map; 0 elsewhere. In this
-/// order: pixels go that are not 0 in `dynamic` (of the same size, or empty) or that have no depth
-/// (not over 0, not finite), then edges (without_edges()), what is beyond `max_depth_m`, and
-/// islands (without_islands()). Edges go before far depth does, for the rim of something before a
-/// far wall is between the two as well. "by_mode" stands for "off" here.
+/// The depth (metres) of static surface near enough for the map; 0 elsewhere. Removes, in this
+/// order: pixels that are set in `dynamic` (of the same size, or empty) or have no depth (not over
+/// 0, not finite), edges (without_edges()), depth beyond `max_depth_m`, and islands
+/// (without_islands()). Edges come before far depth, because the rim of an object before a far wall
+/// lies between the two. "by_mode" counts as "off".
 [[nodiscard]] cv::Mat1f static_depth(const cv::Mat1f& depth,
                                      const Mask& dynamic,
                                      const StaticDepthConfig& config);

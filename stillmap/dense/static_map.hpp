@@ -20,7 +20,7 @@
 
 namespace stillmap {
 
-/// How the map's points are made of what the views see: key frames and some frames between them.
+/// Settings of the dense map.
 struct CloudConfig {
   double voxel_size_m = 0.01;
   StaticDepthConfig depth;
@@ -31,57 +31,59 @@ struct CloudConfig {
   RangeImageConfig range;
   FreeSpaceConfig free;
 
-  /// With every "by_mode" replaced by the rules of a mode.
+  /// The settings with each "by_mode" replaced by the rule of a mode.
   [[nodiscard]] CloudConfig resolved_for(const CloudRules& rules) const;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("voxel_size_m",
           self.voxel_size_m,
-          FieldInfo{
-              "edge of the voxels that the map is thinned to, one point each", "m", 0.001, 1.0});
+          common_setting(
+              FieldInfo{"edge of the voxels of the dense map, which keeps one point per voxel",
+                        "m",
+                        0.001,
+                        1.0}));
     StaticDepthConfig::fields(self.depth, visit);
     LocalCloudConfig::fields(self.local, visit);
-    visit(
-        "view_gap_frames",
-        self.view_gap_frames,
-        FieldInfo{"so long after the last view that went into the map, a frame does that is no key "
-                  "frame; 0: key frames alone",
-                  "frames",
-                  0,
-                  1000000});
+    visit("view_gap_frames",
+          self.view_gap_frames,
+          common_setting(FieldInfo{"number of frames after a view that make any frame a view; 0: "
+                                   "only key frames are views",
+                                   "frames",
+                                   0,
+                                   1000000}));
     visit.group("views", self.views);
     visit("free_space",
           self.free_space,
-          FieldInfo{
-              "removal of points that other views see through; by_mode: as dynamics.mode has it",
+          common_setting(FieldInfo{
+              "removal of points that later views see through; by_mode: as dynamics.mode says",
               "",
               0,
               0,
-              {"by_mode", "off", "on"}});
+              {"by_mode", "off", "on"}}));
     visit.group("range", self.range);
     visit.group("free", self.free);
   }
 };
 
-/// The map of the static world from views in the order of their time. `config` is resolved. The
-/// same with any number of threads.
+/// The dense map of views in the order of their time, in the world frame of their poses. `config`
+/// must be resolved. The same bits with any number of threads.
 [[nodiscard]] PointCloud static_map(std::span<const PosedView> views,
                                     const CameraModel& camera,
                                     const CloudConfig& config,
                                     std::size_t threads = 1);
 
-/// The static surface in a frame. `dynamic_regions.excluded` leaves it; `labels` may be empty;
-/// `config` is resolved.
+/// The view of a frame: its static surface, without `dynamic_regions.excluded`. `labels` may be
+/// empty. `config` must be resolved.
 [[nodiscard]] StaticView static_view(const RgbdFrame& frame,
                                      const cv::Mat2f& rays,
                                      const CloudConfig& config,
                                      const DynamicRegions& dynamic_regions,
                                      const LabelImage& labels);
 
-/// The dynamic regions of a frame, for the cloud. Excluded are all dynamic pixels and a margin.
-/// Known to move are those of objects, and of depth jumps that cover a square with sides of 1/70 of
-/// the image's width, which noise does not.
+/// The dynamic regions of a frame, for its view. Excluded are all dynamic pixels and a margin.
+/// Moving are the pixels of objects, and of depth jumps that cover a square with a side of 1/70 of
+/// the image's width; noise does not cover such squares.
 [[nodiscard]] DynamicRegions dynamic_regions(const DynamicMask& mask, const Mask& excluded);
 
 }  // namespace stillmap

@@ -8,7 +8,7 @@
 
 namespace stillmap {
 
-/// What a frame keeps for the map, in its camera's coordinates.
+/// The part of the dense map that one frame shows, in the coordinates of its camera.
 struct StaticView {
   CompactCloud cloud;
   RangeImage range;

@@ -9,9 +9,9 @@ namespace stillmap {
 namespace {
 
 constexpr std::size_t kSamples = 512;      // of the view
-constexpr std::size_t kHeldSamples = 128;  // of each other one
+constexpr std::size_t kHeldSamples = 128;  // of each view held
 
-/// Some of a view's points, in the world.
+/// A sample of a view's points, in the world frame.
 std::vector<Eigen::Vector3f> samples(const PosedView& posed, std::size_t most) {
   const CompactCloud& points = posed.view->cloud;
   const std::size_t step = std::max<std::size_t>(1, points.size() / most);
@@ -22,10 +22,10 @@ std::vector<Eigen::Vector3f> samples(const PosedView& posed, std::size_t most) {
   return some;
 }
 
-/// What the views held tell of a point of the new one.
+/// How the views held see a point of the new view.
 struct Known {
   Sightings told;
-  int from_near = 0;  // of those that see it
+  int from_near = 0;  // number of views that see it from near enough
 };
 
 void count(Known& known, const Sightings& one, bool is_near) {
@@ -48,7 +48,7 @@ class Comparison {
              const ViewSelectionConfig& config,
              const FreeSpaceConfig& free_space)
       : camera_(camera), config_(config), free_space_(free_space), plain_(free_space) {
-    plain_.weakly_seen = -1;  // what is beside is of interest for what the map has, not here
+    plain_.weakly_seen = -1;  // motion beside points matters for the map, not here
   }
 
   /// `news.unknown` and `news.came`.
@@ -94,7 +94,7 @@ class Comparison {
     return sightings(points, std::span(&range, 1), camera_, plain_);
   }
 
-  /// Adds what one view tells of another's points.
+  /// Adds the sightings of another view's points by one view.
   void ask(const PosedView& other,
            const PosedView& view,
            std::span<const Eigen::Vector3f> points,

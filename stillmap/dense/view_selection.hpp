@@ -18,49 +18,45 @@ struct ViewSelectionConfig {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("enough",
-          self.enough,
-          FieldInfo{"a surface is well known when so many views of the map show it; 0: every view "
-                    "joins the map",
-                    "",
-                    0,
-                    1000});
-    visit("nearer",
-          self.nearer,
-          FieldInfo{"and are no farther from it than this many times the distance of the new one",
-                    "",
-                    1,
-                    1000});
+    visit(
+        "enough",
+        self.enough,
+        FieldInfo{
+            "number of views that make a surface well known; 0: every view is kept", "", 0, 1000});
+    visit(
+        "nearer",
+        self.nearer,
+        FieldInfo{"factor on the distance of the new view within which those views must have been",
+                  "",
+                  1,
+                  1000});
     visit("min_unknown_share",
           self.min_unknown_share,
-          FieldInfo{
-              "a view joins the map when more than this share of it is not well known", "", 0, 1});
-    visit(
-        "min_changed_share",
-        self.min_changed_share,
-        FieldInfo{
-            "or more than this share is not as the map has it: something came or went", "", 0, 1});
+          FieldInfo{"share of surface not well known above which a view is kept", "", 0, 1});
+    visit("min_changed_share",
+          self.min_changed_share,
+          FieldInfo{"share of surface that came or went above which a view is kept", "", 0, 1});
   }
 };
 
-/// What a view would add to those held, as shares of what it shows.
+/// The gain of a new view over the views held, as shares of the surface that it shows.
 struct ViewGain {
-  double unknown = 0;  ///< not seen by enough of them from near enough
-  double came = 0;     ///< stands where the last of them see through
-  double went = 0;     ///< is seen through although the map made of them has it; not looked for
-                       ///< where the others suffice for the view to join
+  double unknown = 0;  ///< surface not seen by enough of them from near enough
+  double came = 0;     ///< surface that the last of them see through
+  double went = 0;  ///< map surface that the new view sees through; 0 if the others already suffice
+                    ///< to keep the view
 };
 
-/// Compares a sample of a view's points with the ranges of the views held, in the order of their
-/// time, and a sample of their points with its range. Views without range tell nothing. Takes time
-/// linear in the number of views.
+/// Compares a sample of the view's points with the range images of the views held, in the order of
+/// their time, and a sample of their points with its range image. Views without range images are
+/// ignored. Takes time linear in the number of views.
 [[nodiscard]] ViewGain gain_of(const PosedView& view,
                                std::span<const PosedView> held,
                                const CameraModel& camera,
                                const ViewSelectionConfig& config,
                                const FreeSpaceConfig& free_space);
 
-/// Whether a view is to join those held.
+/// Whether a view with this gain is kept.
 [[nodiscard]] bool is_worth_keeping(const ViewGain& news, const ViewSelectionConfig& config);
 
 }  // namespace stillmap

@@ -17,7 +17,7 @@ constexpr unsigned kAxisBits = 21;
 constexpr std::int64_t kAxisOffset = std::int64_t{1} << (kAxisBits - 1);
 constexpr std::uint64_t kAxisMask = (std::uint64_t{1} << kAxisBits) - 1;
 
-/// std::floor is a library call on plain x86-64; this is for values of a few million at most.
+/// A floor for values of a few million at most; std::floor is a library call on plain x86-64.
 std::int64_t floor_small(double value) {
   const auto truncated = static_cast<std::int64_t>(value);
   return truncated - static_cast<std::int64_t>(value < static_cast<double>(truncated));
@@ -29,7 +29,7 @@ std::uint64_t pack(std::int64_t x, std::int64_t y, std::int64_t z) {
          static_cast<std::uint64_t>(z + kAxisOffset);
 }
 
-/// The corner of the voxel nearest to minus infinity, in voxels.
+/// The least corner of the voxel, in voxels.
 Eigen::Vector3d corner(std::uint64_t key) {
   const auto axis = [key](unsigned shift) {
     return static_cast<double>(static_cast<std::int64_t>(key >> shift & kAxisMask) - kAxisOffset);
@@ -93,7 +93,7 @@ VoxelGrid::Voxel& VoxelGrid::create(std::uint64_t key) {
   return voxel_at(last_);
 }
 
-/// Where the key's voxel is in the table, or the empty slot where it belongs.
+/// The slot of the key's voxel in the table, or the empty slot where it belongs.
 std::size_t VoxelGrid::slot_of(std::uint64_t key) const {
   const std::size_t mask = table_.size() - 1;
   std::size_t slot = mix(key) & mask;

@@ -15,39 +15,41 @@
 
 namespace stillmap {
 
-/// Thins points to one a voxel: the mean of their positions and colours, the winner of their labels
-/// (see LabelVote). Voxel i along an axis covers [i, i + 1) * voxel_size_m.
+/// Thins points to one per voxel: the mean of positions and colours, the winning label (see
+/// LabelVote). Voxel i along an axis covers [i, i + 1) * voxel_size_m.
 ///
-/// Takes 56 to 64 bytes a voxel, 72 while its table grows; extract() takes 32 more, its output
+/// Takes 56 to 64 bytes per voxel, 72 while its table grows; extract() takes 32 more, its result
 /// included.
 class VoxelGrid {
  public:
-  /// Edge of a voxel, finite and > 0.
+  /// `voxel_size_m` is the edge of a voxel, finite and > 0.
   explicit VoxelGrid(double voxel_size_m);
 
-  /// Counts the point `weight` times. Ignores a point that is not finite or over 2^20 voxels from
-  /// the origin along an axis, and one whose weight would take its voxel's sum over 65535.
+  /// Counts the point `weight` times. Ignores a point that is not finite or more than 2^20 voxels
+  /// from the origin along an axis, and a point whose weight would raise its voxel's sum over
+  /// 65535.
   void add(const Eigen::Vector3f& position,
            const Rgb& color,
            std::uint8_t label = 0,
            std::uint16_t weight = 1);
 
-  /// How many voxels hold points.
+  /// The number of voxels with points.
   [[nodiscard]] std::size_t size() const { return size_; }
 
-  /// One point a voxel, ordered by the voxels' x, then y, then z. Without labels when all are 0.
+  /// One point per voxel, ordered by the voxel's x, then y, then z; without labels if all are 0.
   /// The same points added in the same order give the same bits.
   [[nodiscard]] PointCloud extract() const;
 
  private:
   struct Voxel {
     std::uint64_t key = 0;
-    Eigen::Vector3f offset_sum = Eigen::Vector3f::Zero();  ///< from the voxel's corner, in voxels
+    Eigen::Vector3f offset_sum =
+        Eigen::Vector3f::Zero();  ///< from the corner of the voxel, in voxels
     std::array<std::uint32_t, 3> color_sum{};
     LabelVote labels;
     std::uint16_t weight = 0;
   };
-  // Small blocks rather than one array: growing copies nothing and leaves little unused.
+  // Small blocks instead of one array: growth copies nothing and leaves little memory unused.
   static constexpr std::size_t kBlockSize = 1024;
 
   [[nodiscard]] Voxel& voxel_at(std::size_t i) { return blocks_[i / kBlockSize][i % kBlockSize]; }
@@ -63,12 +65,12 @@ class VoxelGrid {
   double voxel_size_m_;
   std::vector<std::unique_ptr<Voxel[]>> blocks_;  ///< voxels in the order of their first points
   std::size_t size_ = 0;
-  std::size_t last_ = 0;              ///< the voxel of the last point: the next is often in it too
+  std::size_t last_ = 0;  ///< the voxel of the last point; the next point is often in it, too
   std::vector<std::uint32_t> table_;  ///< open addressing: index of a voxel, or kEmptySlot
   bool labelled_ = false;
 };
 
-/// The mean position of the points in each voxel, in VoxelGrid's order.
+/// The mean position of the points of each voxel, in the order of VoxelGrid.
 [[nodiscard]] std::vector<Eigen::Vector3f> thinned(std::span<const Eigen::Vector3f> points,
                                                    double voxel_size_m);
 

@@ -5,12 +5,12 @@
 
 namespace stillmap {
 
-/// The same point in two frames, at ideal pixels.
+/// One point seen in two consecutive frames, at ideal pixels.
 struct PointMatch {
   Eigen::Vector2d previous_px;
   Eigen::Vector2d current_px;
   double previous_depth_m = 0;  ///< 0 where unknown
-  double current_depth_m = 0;   ///< likewise
+  double current_depth_m = 0;   ///< 0 where unknown
 };
 
 }  // namespace stillmap

@@ -23,7 +23,7 @@ std::string reason(int error_number) {
   return std::generic_category().message(error_number);
 }
 
-// A file descriptor that is closed when it goes.
+// A file descriptor that its destructor closes.
 class Descriptor {
  public:
   explicit Descriptor(int fd) : fd_(fd) {}
@@ -42,7 +42,7 @@ class Descriptor {
   int fd_;
 };
 
-// Removes a file that did not get its final name.
+// Removes a temporary file that was not renamed.
 class TemporaryFile {
  public:
   explicit TemporaryFile(fs::path path) : path_(std::move(path)) {}
@@ -84,8 +84,8 @@ struct OpenTemporary {
   fs::path path;
 };
 
-// A new file beside `path`. The name holds the process id and a number, tried upwards, so that
-// neither other processes nor other threads nor what a killed process left behind get in the way.
+// A new file beside `path`. Its name has the process id and the first free number, so that it
+// collides neither with other processes and threads nor with the leftovers of a killed process.
 OpenTemporary open_temporary(const fs::path& path) {
   for (int attempt = 0; attempt < 1000; ++attempt) {
     fs::path name = path;
@@ -99,7 +99,7 @@ OpenTemporary open_temporary(const fs::path& path) {
               path.string());
 }
 
-// Where the bytes go: what `path` links to.
+// The file that is written: the target of a link.
 fs::path checked_target(const fs::path& path) {
   std::error_code ignored;
   const fs::path target =
@@ -119,7 +119,7 @@ bool is_device(const fs::path& target) {
 
 }  // namespace
 
-// A file's new content under a temporary name, which goes unless it takes the file's.
+// The new content of a file in a temporary file, which is removed unless it is renamed.
 class AtomicFile::Replacement {
  public:
   Replacement(fs::path asked_for, fs::path target)
@@ -194,8 +194,8 @@ std::string read_file(const fs::path& path, std::size_t max_bytes) {
   if (S_ISDIR(status.st_mode)) throw Error("cannot read {}: it is a folder", path.string());
   const std::size_t expected = static_cast<std::size_t>(std::max<off_t>(status.st_size, 0));
 
-  // One byte more than the size tells the end of the file with the same read; pipes and /proc say
-  // 0 and are read in growing steps.
+  // Reading one byte more than the size finds the end of the file with the same call. Pipes and
+  // /proc report size 0 and are read in growing steps.
   std::string content(std::min(expected, max_bytes) + 1, '\0');
   std::size_t size = 0;
   while (size <= max_bytes) {

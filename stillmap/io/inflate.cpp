@@ -8,7 +8,7 @@
 namespace stillmap {
 namespace {
 
-constexpr std::size_t kMaxExpansion = 1032;  // no deflate stream holds more for its length
+constexpr std::size_t kMaxExpansion = 1032;  // greatest expansion of a deflate stream
 
 struct Release {
   void operator()(libdeflate_decompressor* decompressor) const {

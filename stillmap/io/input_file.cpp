@@ -19,7 +19,7 @@ Error read_error(const std::filesystem::path& path, int error_number) {
 
 }  // namespace
 
-// Not blocking: to open a pipe would wait for who writes to it.
+// Non-blocking, because opening a pipe would wait for its writer.
 InputFile::InputFile(const std::filesystem::path& path)
     : path_(path), fd_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
   if (fd_ < 0) throw read_error(path, errno);

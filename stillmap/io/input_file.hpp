@@ -8,18 +8,18 @@
 
 namespace stillmap {
 
-/// A file that is read in parts.
+/// A regular file, open for reading in parts.
 class InputFile {
  public:
-  /// Throws Error when it cannot be read or is no regular file.
+  /// Throws Error when the file cannot be read or is no regular file.
   explicit InputFile(const std::filesystem::path& path);
   InputFile(const InputFile&) = delete;
   InputFile& operator=(const InputFile&) = delete;
   ~InputFile();
 
-  /// When it was opened.
+  /// The size when the file was opened, bytes.
   [[nodiscard]] std::uint64_t size() const { return size_; }
-  /// `size` bytes from `offset` on. Throws Error when that fails, or when the file has become
+  /// Returns `size` bytes from `offset` on. Throws Error when reading fails or the file has become
   /// shorter.
   [[nodiscard]] std::string read(std::uint64_t offset, std::size_t size) const;
 

@@ -58,8 +58,8 @@ cv::Mat3b decode_jpeg(std::string_view bytes, const std::string& name) {
     throw Error("{}: CMYK JPEG, expected gray or RGB", name);
   }
   cv::Mat3b rgb(height, width);
-  // A cut file is only a warning to the library, which fills the rest with gray: so stop at
-  // warnings. The limit on scans is against small files that take minutes to decode.
+  // The library only warns of a truncated file and fills the rest with gray, so warnings are errors
+  // here. The limit on scans refuses small files that take minutes to decode.
   if (tjDecompress2(handle.get(),
                     as_uchar(bytes),
                     bytes.size(),

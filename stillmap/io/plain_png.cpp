@@ -29,7 +29,7 @@ std::uint32_t big_endian(std::string_view bytes) {
   return value;
 }
 
-/// Takes the next chunk off; nothing when it is cut short or its checksum is wrong.
+/// Takes the next chunk off the input. Nothing when it is truncated or its checksum is wrong.
 std::optional<Chunk> next_chunk(std::string_view& rest) {
   constexpr std::size_t kAround = 12;  // length, type and checksum
   if (rest.size() < kAround) return std::nullopt;
@@ -66,7 +66,7 @@ std::optional<Layout> read_header(const Chunk& chunk, PngKind kind) {
   return layout;
 }
 
-/// The data of all IDAT chunks, which follow one another, up to a sound end of the file.
+/// The data of all IDAT chunks, which must be consecutive. Nothing unless the file ends correctly.
 std::optional<std::string> collect_data(std::string_view rest) {
   std::string data;
   data.reserve(rest.size());
@@ -95,10 +95,10 @@ std::uint8_t paeth(int left, int above, int corner) {
   return static_cast<std::uint8_t>(by_left <= by_above && by_left <= by_corner ? left : nearer);
 }
 
-/// Adds to each byte of a row what `predict(left, above, corner)` says; `above` is the row before.
+/// Adds `predict(left, above, corner)` to each byte of a row; `above` is the row before.
 template <std::size_t kPixel, class Predict>
 void add_prediction(std::span<std::uint8_t> row, const std::uint8_t* above, Predict predict) {
-  std::array<std::uint8_t, kPixel> left{}, corner{};  // kept where the compiler likes
+  std::array<std::uint8_t, kPixel> left{}, corner{};  // small enough for registers
   for (std::size_t i = 0; i < row.size(); i += kPixel) {
     for (std::size_t k = 0; k < kPixel; ++k) {
       const std::uint8_t up = above[i + k];
@@ -109,7 +109,7 @@ void add_prediction(std::span<std::uint8_t> row, const std::uint8_t* above, Pred
   }
 }
 
-/// Undoes a row's filter (PNG, section 9); false for one that there is not.
+/// Undoes the filter of a row (PNG specification, section 9). False for an unknown filter.
 template <std::size_t kPixel>
 bool unfilter(std::uint8_t filter, std::span<std::uint8_t> row, const std::uint8_t* above) {
   switch (filter) {
@@ -145,7 +145,7 @@ void copy_row(const std::uint8_t* source, const Layout& layout, std::uint8_t* ta
   }
 }
 
-/// From the rows of a file, each behind its filter's number.
+/// Decodes the rows of a file, each of which follows the number of its filter.
 std::optional<cv::Mat> unfiltered(std::vector<std::uint8_t> rows, const Layout& layout) {
   cv::Mat image(layout.height, layout.width, layout.mat_type);
   const std::size_t size = layout.row_bytes();

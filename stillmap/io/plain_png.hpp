@@ -10,9 +10,9 @@
 
 namespace stillmap {
 
-/// The pixels of a sound PNG of the plainest sort: stored as the very kind asked for, not
-/// interlaced, no larger than kMaxImageSidePx. Nothing for any other: that is left to libpng, which
-/// reads more and says what is wrong. Takes less than half of libpng's time.
+/// The pixels of an undamaged plain PNG: stored as the kind asked for, not interlaced, no larger
+/// than kMaxImageSidePx. Nothing for any other file: libpng reads the other kinds and describes
+/// damage. Takes less than half of libpng's time.
 [[nodiscard]] std::optional<cv::Mat> decode_plain_png(std::string_view bytes, PngKind kind);
 
 }  // namespace stillmap

@@ -25,7 +25,7 @@ static_assert(std::endian::native == std::endian::little,
 
 constexpr std::size_t kMaxFileBytes = std::size_t{4} << 30U;
 
-// What a point is made of, in this order, wherever a file has it.
+// The values of a point, in this order, whatever their order in a file.
 enum Slot : std::size_t { kX, kY, kZ, kRed, kGreen, kBlue, kLabel, kNx, kNy, kNz, kSlots };
 constexpr std::array<std::string_view, kSlots> kSlotNames = {
     "x", "y", "z", "red", "green", "blue", "label", "nx", "ny", "nz"};
@@ -43,7 +43,7 @@ bool has(const SlotColumns& columns, Slot slot) {
   return columns[slot].has_value();
 }
 
-// Which column of the file each slot comes from; the first of equal names.
+// The column of the file for each slot; the first of equal names.
 SlotColumns find_columns(const PlyHeader& header, const std::string& name) {
   SlotColumns columns;
   for (std::size_t slot = 0; slot < kSlots; ++slot) {
@@ -93,7 +93,7 @@ double load(PlyType type, const char* bytes) {
   return 0.0;
 }
 
-// Collects points into a cloud and checks what the file says of them.
+// Collects points into a cloud and checks their values.
 class CloudBuilder {
  public:
   CloudBuilder(const PlyHeader& header, const SlotColumns& columns, std::string name)
@@ -170,7 +170,7 @@ PointCloud read_binary(const PlyHeader& header, std::string_view data, const std
   return builder.take();
 }
 
-// Splits off the next line; nothing at the end of the data.
+// Splits off the next line. Nothing at the end of the data.
 std::optional<std::string_view> take_line(std::string_view& data) {
   if (data.empty()) return std::nullopt;
   const std::size_t end = std::min(data.find('\n'), data.size());
@@ -179,7 +179,7 @@ std::optional<std::string_view> take_line(std::string_view& data) {
   return line;
 }
 
-// Reads `numbers.size()` numbers apart by blanks; false when the line has others or fewer.
+// Reads `numbers.size()` numbers separated by blanks. False when the line has fewer, or other text.
 bool parse_numbers(std::string_view line, std::span<double> numbers) {
   const char* at = line.data();
   const char* end = at + line.size();
@@ -197,7 +197,8 @@ bool parse_numbers(std::string_view line, std::span<double> numbers) {
 PointCloud read_ascii(const PlyHeader& header, std::string_view data, const std::string& name) {
   const SlotColumns columns = find_columns(header, name);
   std::vector<double> numbers(header.properties.size());
-  if (header.vertices > data.size() / (2 * numbers.size()) + 1) {  // a digit and a blank each
+  if (header.vertices >
+      data.size() / (2 * numbers.size()) + 1) {  // a number takes a digit and a blank at least
     throw Error("{}: {} vertices in the header, but only {} bytes for them",
                 name,
                 header.vertices,

@@ -17,19 +17,20 @@ struct PlyProperty {
   PlyType type = PlyType::kFloat;
 };
 
-/// What the header of a PLY says about its element `vertex`, and where that begins.
+/// The element `vertex` as the header of a PLY describes it, and the place of its data.
 struct PlyHeader {
   bool binary = false;  ///< little endian; else ASCII
   std::size_t vertices = 0;
-  std::vector<PlyProperty> properties;  ///< of a vertex, in the file's order
-  std::size_t vertex_offset = 0;        ///< bytes (binary) or ...
-  std::size_t vertex_line = 0;          ///< ... lines of data (ASCII) before the vertices' first
-  std::size_t header_bytes = 0;         ///< where the data begins
+  std::vector<PlyProperty> properties;  ///< of a vertex, in the order of the file
+  std::size_t vertex_offset = 0;        ///< bytes of data before the first vertex (binary)
+  std::size_t vertex_line = 0;          ///< lines of data before the first vertex (ASCII)
+  std::size_t header_bytes = 0;         ///< size of the header; the data follows
   std::size_t header_lines = 0;
 };
 
-/// Reads the header at the start of `bytes`. `name` stands in the messages. Throws Error for what
-/// is no PLY, is big-endian, has no vertices' element, or has a list among or before the vertices.
+/// Reads the header at the start of `bytes`. Messages call the file `name`. Throws Error for a file
+/// that is no PLY, is big-endian, has no element `vertex`, or has a list property among or before
+/// the vertices.
 [[nodiscard]] PlyHeader parse_ply_header(std::string_view bytes, const std::string& name);
 
 }  // namespace stillmap

@@ -19,9 +19,9 @@
 namespace stillmap {
 namespace {
 
-// libpng reports an error by a long jump, which skips destructors. So every call into it happens in
-// a small member function that arms the jump, holds no object of its own and returns whether it
-// went well; the text of the error is kept in a plain array.
+// libpng reports an error by a long jump, which skips destructors. Every call of libpng is
+// therefore made in a small member function that sets the jump, has no objects of its own and
+// returns whether the call succeeded. The text of the error is kept in a plain array.
 struct ErrorText {
   std::array<char, 128> text = {};
 };
@@ -32,7 +32,7 @@ void on_error(png_structp png, png_const_charp message) {
   png_longjmp(png, 1);
 }
 
-void on_warning(png_structp, png_const_charp) {}  // damage to what is not pixels does not matter
+void on_warning(png_structp, png_const_charp) {}  // damage outside the pixels does not matter
 
 class PngReader {
  public:
@@ -50,7 +50,7 @@ class PngReader {
   [[nodiscard]] bool read_header() {
     if (setjmp(png_jmpbuf(png_)) != 0) return false;
     png_set_user_limits(
-        png_, PNG_UINT_31_MAX, PNG_UINT_31_MAX);  // the caller's limit says it better
+        png_, PNG_UINT_31_MAX, PNG_UINT_31_MAX);  // the limit of the caller gives a better message
     png_read_info(png_, info_);
     return true;
   }
@@ -60,7 +60,7 @@ class PngReader {
   [[nodiscard]] int bit_depth() const { return png_get_bit_depth(png_, info_); }
   [[nodiscard]] int color_type() const { return png_get_color_type(png_, info_); }
 
-  // Makes libpng deliver rows of the kind; `row_bytes` is what the caller's rows have room for.
+  // Makes libpng deliver rows of the kind. `row_bytes` is the size of the caller's rows.
   [[nodiscard]] bool start(PngKind kind, std::size_t row_bytes) {
     if (setjmp(png_jmpbuf(png_)) != 0) return false;
     if (kind == PngKind::kRgb8) {
@@ -73,7 +73,7 @@ class PngReader {
     return png_get_rowbytes(png_, info_) == row_bytes;
   }
 
-  // Reads all rows and what follows them, so that a file cut anywhere is noticed.
+  // Reads all rows and the chunks after them, so that truncation anywhere is noticed.
   [[nodiscard]] bool read_rows(png_bytep* rows) {
     if (setjmp(png_jmpbuf(png_)) != 0) return false;
     png_read_image(png_, rows);
@@ -121,8 +121,8 @@ class PngWriter {
                  PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT,
                  PNG_FILTER_TYPE_DEFAULT);
-    // Photographs with noise repeat nothing: runs alone and one filter give the bytes of the
-    // default settings in a fifth of the time.
+    // Noisy photographs have no repetitions: run-length coding and one filter give files as small
+    // as the default settings do, in a fifth of the time.
     png_set_filter(png_, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
     png_set_compression_level(png_, 1);
     if (image.channels() == 3) png_set_compression_strategy(png_, Z_RLE);
@@ -146,7 +146,7 @@ class PngWriter {
     try {
       bytes_.append(data, data + size);
       return true;
-    } catch (const std::bad_alloc&) {  // must not pass through C code
+    } catch (const std::bad_alloc&) {  // exceptions must not pass through C code
       return false;
     }
   }
@@ -227,7 +227,8 @@ cv::Mat decode_by_libpng(std::string_view bytes, PngKind kind, const std::string
 std::string encode_png_bytes(const cv::Mat& image) {
   const int type = image.type();
   STILLMAP_CHECK(!image.empty() && (type == CV_8UC3 || type == CV_8UC1 || type == CV_16UC1));
-  cv::Mat same_pixels = image;  // libpng's interface wants rows it may write to, but does not
+  cv::Mat same_pixels =
+      image;  // libpng's interface asks for writable rows but does not write to them
   std::vector<png_bytep> rows = row_pointers(same_pixels);
   PngWriter writer;
   if (!writer.write(image, rows.data())) {

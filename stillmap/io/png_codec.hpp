@@ -9,10 +9,11 @@
 
 namespace stillmap {
 
-/// Images of more than this many pixels a side are refused before anything is allocated for them.
+/// Greatest width and height of an image, pixels. Larger images are refused before anything is
+/// allocated.
 inline constexpr int kMaxImageSidePx = 8192;
 
-/// What the pixels of a PNG are decoded to. A file that holds something else is refused.
+/// The type of pixels that a PNG is decoded to. A file with other pixels is refused.
 enum class PngKind {
   kRgb8,   ///< from 8-bit gray or colour, without palette; transparency is dropped. CV_8UC3
   kGray8,  ///< from 8-bit gray only. CV_8UC1
@@ -21,16 +22,16 @@ enum class PngKind {
 
 [[nodiscard]] bool is_png(std::string_view bytes);
 
-/// Decodes a whole PNG. `name` stands in the messages. Throws Error for a wrong kind of pixels, a
-/// side over kMaxImageSidePx, a truncated or damaged file.
+/// Decodes a whole PNG. Messages call it `name`. Throws Error for pixels of another kind, a side
+/// over kMaxImageSidePx, and a truncated or damaged file.
 [[nodiscard]] cv::Mat decode_png(std::string_view bytes, PngKind kind, const std::string& name);
 
-/// The same by libpng alone, which decode_png leaves only the rarer kinds and the broken to.
+/// decode_png() by libpng alone. decode_png() uses it for the rarer kinds and for damaged files.
 [[nodiscard]] cv::Mat decode_by_libpng(std::string_view bytes,
                                        PngKind kind,
                                        const std::string& name);
 
-/// Encodes CV_8UC3 (RGB), CV_8UC1 or CV_16UC1, without loss; the same image gives the same bytes.
+/// Encodes CV_8UC3 (RGB), CV_8UC1 or CV_16UC1 without loss. The same image gives the same bytes.
 [[nodiscard]] std::string encode_png_bytes(const cv::Mat& image);
 
 }  // namespace stillmap

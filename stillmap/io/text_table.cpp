@@ -16,7 +16,7 @@ constexpr std::string_view kBlanks = " \t\r";
 
 constexpr std::size_t kMaxRows = 2'000'000;  // an hour and a half of motion capture at 300 Hz
 
-// The columns of a line, at most `limit` of them.
+// The columns of a line, `limit` at most.
 std::vector<std::string_view> split(std::string_view line, std::size_t limit) {
   std::vector<std::string_view> columns;
   while (columns.size() < limit) {
@@ -30,7 +30,7 @@ std::vector<std::string_view> split(std::string_view line, std::size_t limit) {
   return columns;
 }
 
-// What a message repeats of a file: never long, never a control character.
+// A text of a file as a message repeats it: short, and without control characters.
 std::string quoted(std::string_view text) {
   std::string result = "'";
   for (const char c : text.substr(0, 40)) result += c >= ' ' && c <= '~' ? c : '?';

@@ -11,18 +11,18 @@
 
 namespace stillmap {
 
-/// One line of data in a text table: its number in the file, from 1, and its columns.
+/// One row of a text table: its line number in the file, from 1, and its columns.
 struct TextRow {
   std::size_t line = 0;
-  std::vector<std::string_view> columns;  ///< point into the table's text
+  std::vector<std::string_view> columns;  ///< they point into the text of the table
 };
 
-/// A text file of columns apart by blanks, as the TUM benchmark uses them: `#` starts a line of
-/// comment, empty lines count for nothing, lines may end as on Windows.
+/// A text file with columns separated by blanks, as in the TUM benchmark. `#` begins a comment
+/// line, empty lines are ignored, and lines may end with CR LF.
 class TextTable {
  public:
-  /// Throws Error when the file cannot be read, has more than 64 MiB or two million rows, or when a
-  /// row has not as many columns as `layout` names (as in "stamp file").
+  /// Throws Error when the file cannot be read, has more than 64 MiB or two million rows, or when
+  /// the number of columns of a row differs from that of `layout` ("stamp file" has two).
   [[nodiscard]] static TextTable read(const std::filesystem::path& path, std::string_view layout);
   TextTable(const TextTable&) = delete;
   TextTable& operator=(const TextTable&) = delete;
@@ -32,10 +32,10 @@ class TextTable {
   /// "file:line", for messages.
   [[nodiscard]] std::string place(const TextRow& row) const;
 
-  /// A finite number. Throws Error for anything else.
+  /// A finite number. Throws Error for any other text.
   [[nodiscard]] double number(const TextRow& row, std::size_t column) const;
 
-  /// The number with its text. Throws Error for anything but a finite number.
+  /// A finite number with its text. Throws Error for any other text.
   [[nodiscard]] Stamp stamp(const TextRow& row, std::size_t column) const;
 
  private:

@@ -14,7 +14,7 @@
 namespace stillmap {
 namespace {
 
-constexpr double kMaxCoordinateM = 1e9;  // beyond, squares and sums would lose all meaning
+constexpr double kMaxCoordinateM = 1e9;  // beyond it squares and sums lose their precision
 
 StampedPose parse_pose(const TextTable& table, const TextRow& row) {
   const auto n = [&](std::size_t column) { return table.number(row, column); };
@@ -23,8 +23,8 @@ StampedPose parse_pose(const TextTable& table, const TextRow& row) {
     throw Error("{}: position beyond {} m, expected metres", table.place(row), kMaxCoordinateM);
   }
   Eigen::Vector4d q(n(4), n(5), n(6), n(7));
-  // TUM's files have four decimals, so that a norm is 1 to about 2e-4; a coarse bound tells numbers
-  // that are no quaternion at all.
+  // The files of TUM have four decimals, so that norms are 1 to about 2e-4. A coarse bound detects
+  // numbers that are no quaternion at all.
   if (q.cwiseAbs().maxCoeff() > 1e6 || q.norm() < 1e-6) {
     throw Error("{}: quaternion of length {:.3g}, expected about 1", table.place(row), q.norm());
   }
@@ -45,7 +45,7 @@ void sort_by_stamp(Trajectory& poses) {
   poses = std::move(unique);
 }
 
-// A stamp that came from no file has no text.
+// A stamp that no file gave has no text.
 std::string stamp_text(const Stamp& stamp) {
   return stamp.text.empty() ? fmt::format("{:.6f}", stamp.seconds) : stamp.text;
 }
@@ -69,7 +69,7 @@ std::string format_trajectory(const Trajectory& trajectory) {
     const Eigen::Vector3d t = pose.T_world_camera.translation();
     Eigen::Quaterniond q(pose.T_world_camera.linear());
     q.normalize();
-    if (q.w() < 0) q.coeffs() *= -1.0;  // of the two quaternions of a rotation always the same one
+    if (q.w() < 0) q.coeffs() *= -1.0;  // chooses one of the two quaternions of a rotation
     fmt::format_to(std::back_inserter(text),
                    "{} {:.7f} {:.7f} {:.7f} {:.7f} {:.7f} {:.7f} {:.7f}\n",
                    stamp_text(pose.stamp),

@@ -14,7 +14,7 @@ std::uint32_t end_of(std::span<const SubmapId> submaps) {
   return submaps.empty() ? 0 : submaps.back().value + 1;
 }
 
-// Of numbers that are no greater than kMaxId.
+// For numbers of at most kMaxId.
 void check_sum(std::uint32_t a, std::uint32_t b) {
   if (b <= kMaxId - a) return;
   throw Error("these sessions together have more key frames, landmarks or frames than fit ({})",

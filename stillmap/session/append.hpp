@@ -5,9 +5,9 @@
 
 namespace stillmap {
 
-/// Both sessions as one: the second's ids, submaps and frames follow the first's, nothing ties them
-/// yet. Camera and settings are the first's. Both maps have the same pyramid levels. Throws Error
-/// when there are more than ids can count.
+/// Both sessions in one: ids, submaps and frames of the second follow those of the first, and the
+/// submaps are not joined. Camera and settings are those of the first. Both maps must have the same
+/// pyramid levels. Throws Error when ids overflow.
 [[nodiscard]] Session appended(const Session& first, const Session& second);
 
 }  // namespace stillmap

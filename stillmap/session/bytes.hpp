@@ -24,7 +24,7 @@ concept Number = std::is_arithmetic_v<T> && !std::same_as<T, bool>;
 
 namespace bytes_detail {
 
-/// Numbers in a row change between this machine's order of bytes and little endian.
+/// Converts consecutive numbers between the byte order of this machine and little endian.
 template <Number T>
 void swap_if_big_endian(char* bytes, std::size_t size) {
   if constexpr (std::endian::native == std::endian::big) {
@@ -38,7 +38,7 @@ void swap_if_big_endian(char* bytes, std::size_t size) {
 
 }  // namespace bytes_detail
 
-/// Numbers and texts as bytes, little endian, one after the other without gaps.
+/// Writes numbers and texts as bytes, little endian, without gaps.
 class ByteWriter {
  public:
   template <Number T>
@@ -46,7 +46,7 @@ class ByteWriter {
     append<T>(&value, sizeof(T));
   }
   void flag(bool value) { number<std::uint8_t>(value ? 1 : 0); }
-  /// Its size in 32 bits, and its bytes.
+  /// Writes the size of the text in 32 bits, and its bytes.
   void text(std::string_view value) {
     count(value.size());
     bytes_.append(value);
@@ -55,13 +55,13 @@ class ByteWriter {
     STILLMAP_CHECK(value <= std::numeric_limits<std::uint32_t>::max());
     number(static_cast<std::uint32_t>(value));
   }
-  /// Each element's `T`s; the number of elements is not written.
+  /// Writes the `T`s of each element, but not the number of elements.
   template <Number T, class Element>
   void array(const std::vector<Element>& values) {
     static_assert(sizeof(Element) % sizeof(T) == 0);
     append<T>(values.data(), values.size() * sizeof(Element));
   }
-  /// Three rows of rotation and translation.
+  /// Writes the three rows of [R t].
   void pose(const Eigen::Isometry3d& T) {
     for (int row = 0; row < 3; ++row) {
       for (int column = 0; column < 4; ++column) number(T(row, column));
@@ -85,11 +85,11 @@ class ByteWriter {
   std::string bytes_;
 };
 
-/// Reads what ByteWriter has written. The bytes may come from anywhere: each function throws Error
-/// when they do not hold what is asked for, and before it takes memory for more than they can hold.
+/// Reads the bytes of a ByteWriter. The bytes need not be trusted: each function throws Error when
+/// they do not hold the value asked for, and before it allocates more than they can hold.
 class ByteReader {
  public:
-  /// `place`: what the bytes are, for messages.
+  /// `place` names the bytes in messages.
   ByteReader(std::string bytes, std::string place)
       : bytes_(std::move(bytes)), place_(std::move(place)) {}
 
@@ -109,7 +109,7 @@ class ByteReader {
     at_ += size;
     return bytes_.substr(at_ - size, size);
   }
-  /// How many things follow that take at least `least_size` bytes each.
+  /// Reads the number of following items, of at least `least_size` bytes each.
   [[nodiscard]] std::size_t count(std::size_t least_size) {
     const std::size_t value = number<std::uint32_t>();
     if (value > left() / least_size) fail_short();
@@ -135,7 +135,7 @@ class ByteReader {
     for (int i = 0; i < 3; ++i) v[i] = number<double>();
     return v;
   }
-  /// Throws Error when not all has been read.
+  /// Throws Error when bytes are left.
   void finish() const {
     if (left() > 0) throw Error("{}: {} bytes too many", place_, left());
   }

@@ -10,16 +10,16 @@
 
 namespace stillmap {
 
-// What a session consists of as bytes. encode() gives the content of a section; decode_*() reads it
-// to its end and throws Error when it is not of that form. What it means is checked elsewhere
+// The parts of a session as bytes. encode() gives the content of a section; decode_*() reads it to
+// its end and throws Error when it has another form. Meanings are checked elsewhere
 // (session_parts.hpp).
 
-/// The map's numbers that stand in no list.
+/// The numbers of the map that belong to no list.
 [[nodiscard]] ByteWriter encode_map_head(const MapParts& map);
 [[nodiscard]] MapParts decode_map_head(ByteReader content);
 
 [[nodiscard]] ByteWriter encode(const Keyframe& keyframe);
-/// The grid of its features is made anew. Without its list of landmarks.
+/// Rebuilds the grid of the features. The list of landmarks stays empty.
 [[nodiscard]] Keyframe decode_keyframe(ByteReader content, const CameraModel& camera);
 
 [[nodiscard]] ByteWriter encode(std::span<const Landmark> landmarks);
@@ -44,7 +44,7 @@ using DroppedKeyframes = std::vector<std::pair<KeyframeId, Anchor>>;
 [[nodiscard]] ByteWriter encode(const ViewRecord& record);
 [[nodiscard]] ViewRecord decode_view(ByteReader content);
 
-// Shared by several of them.
+// Shared by several sections.
 void put(ByteWriter& out, const Stamp& stamp);
 [[nodiscard]] Stamp take_stamp(ByteReader& in);
 template <class AnyId>

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t kPoseSize = 12 * sizeof(double);
 constexpr std::size_t kObservationSize = 8;
-// With its one observation at least.
+// With one observation, the least number.
 constexpr std::size_t kLeastLandmarkSize = 116 + kObservationSize;
 
 void put(ByteWriter& out, const Landmark& landmark) {

@@ -21,7 +21,7 @@ bool same_lens(const CameraModel& a, const CameraModel& b) {
   return intrinsics(a) == intrinsics(b);
 }
 
-// Closes what loops the key frames from `begin` on make with those of `places`.
+// Closes the loops between the key frames from `begin` on and those of `places`.
 std::size_t close_loops(Session& session,
                         const PlaceIndex& places,
                         KeyframeId begin,

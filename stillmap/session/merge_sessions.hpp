@@ -9,21 +9,21 @@
 
 namespace stillmap {
 
-/// Throws Error when a session was made with another camera than `camera` or with other pyramid
-/// levels. `place` begins the message.
+/// Throws Error, beginning with `place`, when a session was made with another camera than `camera`
+/// or with other pyramid levels.
 void check_fits(const Session& session,
                 const CameraModel& camera,
                 const std::vector<float>& level_scales,
                 const std::string& place);
 
 struct MergedSessions {
-  Session session;        ///< with the first's settings, in its coordinates
-  std::size_t loops = 0;  ///< places of the first that the second has seen again
+  Session session;        ///< with the settings and in the coordinates of the first
+  std::size_t loops = 0;  ///< number of places of the first that the second recognised
 };
 
-/// Two sessions of one room as one: the second's key frames look for places of the first, loops are
-/// closed, and all is adjusted together. Nothing when they have no place in common that can be
-/// recognised. Throws Error when they do not fit.
+/// Merges two sessions of one room: the key frames of the second look for places of the first,
+/// loops are closed, and all key frames are adjusted together. Nothing when no common place is
+/// recognised. Throws Error when cameras or pyramid levels differ.
 [[nodiscard]] std::optional<MergedSessions> merge_sessions(const Session& first,
                                                            const Session& second,
                                                            const std::string& second_name);

@@ -22,7 +22,7 @@ constexpr std::array kCameraNumbers = {&CameraModel::fx,
                                        &CameraModel::depth_factor,
                                        &CameraModel::readout_s};
 
-// A cell is its 16 bits: 2 mm each, the highest for what moves.
+// A cell is 16 bits: the range in units of 2 mm; the highest bit marks motion.
 static_assert(sizeof(RangeCell) == sizeof(std::uint16_t) &&
               std::is_trivially_copyable_v<RangeCell>);
 
@@ -72,7 +72,7 @@ RangeImage take_range(ByteReader& in) {
   range.columns = in.number<std::int32_t>();
   range.rows = in.number<std::int32_t>();
   if (range.columns < 0 || range.rows < 0) throw Error("{}: invalid image size", in.place());
-  // Both below 2^31: their product fits.
+  // Both are below 2^31, so that their product fits.
   range.cells = in.array<std::uint16_t, RangeCell>(static_cast<std::size_t>(range.columns) *
                                                    static_cast<std::size_t>(range.rows));
   return range;

@@ -8,7 +8,7 @@
 namespace stillmap {
 namespace {
 
-// What of `bytes` is a name, for messages.
+// The printable part of a tag, for messages.
 std::string readable(std::string_view bytes) {
   std::string text(bytes);
   for (char& c : text) {

@@ -11,18 +11,19 @@
 
 namespace stillmap {
 
-// The frame of a session file: a head, then sections one after the other. docs/session-format.md
-// has the layout.
+// The outer structure of a session file: a head, then sections. docs/session-format.md has the
+// layout.
 
 inline constexpr std::string_view kSessionMagic = "stillmap";
 inline constexpr std::uint32_t kSessionVersion = 2;
-inline constexpr std::size_t kSessionHeadSize = 16;   ///< magic, version, checksum
-inline constexpr std::size_t kSectionHeadSize = 12;   ///< tag, size of the content
-inline constexpr std::size_t kSectionExtraSize = 16;  ///< that, and the checksum behind it
+inline constexpr std::size_t kSessionHeadSize = 16;  ///< magic, version, checksum
+inline constexpr std::size_t kSectionHeadSize = 12;  ///< tag, size of the content
+inline constexpr std::size_t kSectionExtraSize =
+    16;  ///< section head and the checksum after the content
 inline constexpr std::size_t kMaxSectionSize = std::size_t{1} << 30U;
 inline constexpr std::string_view kEndTag = "END ";
 
-/// CRC-32 (zlib's, IEEE 802.3) of bytes that follow those with the checksum `before`.
+/// CRC-32 (IEEE 802.3, as in zlib) of bytes that follow bytes with the checksum `before`.
 [[nodiscard]] std::uint32_t checksum(std::string_view bytes, std::uint32_t before = 0);
 
 /// The bytes of a file head.
@@ -36,7 +37,7 @@ class SectionWriter {
   explicit SectionWriter(Sink sink);
   /// Throws Error, with `place`, for a content of more than kMaxSectionSize.
   void write(std::string_view tag, const ByteWriter& content, const std::string& place);
-  /// Call once, last.
+  /// Writes the end. To be called once, last.
   void finish();
 
  private:
@@ -46,26 +47,26 @@ class SectionWriter {
   std::uint32_t sections_ = 0;
 };
 
-/// Bytes that are read in parts.
+/// A source of bytes that is read in parts.
 struct ByteSource {
   std::uint64_t size = 0;
   std::function<std::string(std::uint64_t offset, std::size_t size)> read;
 };
 
-/// Reads them one after the other. The bytes may come from anywhere: everything throws Error, in
-/// one line that starts with the file's name, for what is no whole session file.
+/// Reads sections one after the other. The bytes need not be trusted: every function throws Error,
+/// in one line that begins with the file name, for bytes that are no complete session file.
 class SectionReader {
  public:
   /// Reads the head.
   SectionReader(ByteSource source, std::string file);
 
-  /// Whether that is the next section.
+  /// Whether the next section has this tag.
   [[nodiscard]] bool at(std::string_view tag) const { return next_.tag == tag; }
-  /// The content of the next section, which has to have this tag.
+  /// Reads the content of the next section, which must have this tag.
   [[nodiscard]] ByteReader read(std::string_view tag);
-  /// Passes over it; its content is not read.
+  /// Skips the next section without reading its content.
   void skip(std::string_view tag);
-  /// Nothing but the end follows.
+  /// Throws Error unless the end follows.
   void finish();
 
   [[nodiscard]] const std::string& file() const { return file_; }
@@ -84,8 +85,8 @@ class SectionReader {
 
   ByteSource source_;
   std::string file_;
-  std::uint64_t at_ = kSessionHeadSize;  // where the next section begins
-  std::uint32_t sections_ = 0;           // before the next
+  std::uint64_t at_ = kSessionHeadSize;  // position of the next section
+  std::uint32_t sections_ = 0;           // number of sections before the next
   Head next_;
 };
 

@@ -14,27 +14,27 @@
 
 namespace stillmap {
 
-/// A tracked frame's pose, held relative to a key frame (which may have been dropped since) so that
-/// later optimisation reaches it.
+/// The pose of a tracked frame relative to a key frame, so that later optimisation moves it. The
+/// key frame may have been removed since.
 struct FrameRecord {
   Stamp stamp;
   KeyframeId reference;
   Eigen::Isometry3d T_reference_frame = Eigen::Isometry3d::Identity();
 };
 
-/// A frame's part of the dense map.
+/// The view of a recorded frame.
 struct ViewRecord {
   std::uint32_t frame = 0;                 ///< index of its record
   std::shared_ptr<const StaticView> view;  ///< not null in a finished session
 };
 
-/// All that a run knows of where it has been: what is saved, continued and merged.
+/// The state of a run that can be saved, continued and merged.
 struct Session {
   CameraModel camera;
-  std::string config_yaml;  ///< the settings that it was made with
+  std::string config_yaml;  ///< the settings of the run
   Map map = Map({});
   std::vector<LoopEdge> loops;
-  std::vector<FrameRecord> frames;  ///< in the order in which they were tracked
+  std::vector<FrameRecord> frames;  ///< in the order of tracking
   std::vector<ViewRecord> views;    ///< by frame, ascending
 };
 

@@ -9,13 +9,13 @@
 
 namespace stillmap {
 
-/// The settings that a session was made with. Throws Error, which begins with `place`, when they
-/// are not those of this version.
+/// The settings of a session. Throws Error, beginning with `place`, when this version does not know
+/// them.
 [[nodiscard]] SystemConfig settings_of(const Session& session, const std::string& place);
 
-/// The map of a submap of the session from its views, as its frames stand now, with the session's
-/// settings. Throws Error, which begins with `place`, for settings as above, and when these ask for
-/// free space but the views have none.
+/// The dense map of a submap, made of the views of the session under the present poses, with the
+/// settings of the session. Throws Error, beginning with `place`, for unknown settings, and when
+/// the settings ask for free space but the views have no range images.
 [[nodiscard]] PointCloud session_cloud(const Session& session,
                                        SubmapId submap,
                                        const std::string& place);

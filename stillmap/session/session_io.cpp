@@ -16,20 +16,20 @@
 namespace stillmap {
 namespace {
 
-// The sections, in their order.
+// The tags of the sections, in order.
 constexpr std::string_view kCamera = "CAMR";
 constexpr std::string_view kConfig = "CONF";
 constexpr std::string_view kMapHead = "MAPH";
-constexpr std::string_view kKeyframe = "KEYF";   // each its own
+constexpr std::string_view kKeyframe = "KEYF";   // one section each
 constexpr std::string_view kLandmarks = "LMRK";  // kLandmarksTogether in each but the last
 constexpr std::string_view kDropped = "DROP";
 constexpr std::string_view kLoops = "LOOP";
 constexpr std::string_view kFrames = "FRAM";
-constexpr std::string_view kView = "VIEW";  // each its own
+constexpr std::string_view kView = "VIEW";  // one section each
 
 constexpr std::size_t kLandmarksTogether = 65536;
 
-// A large image has a grid of many cells even for few features: the memory for it is to be in
+// The feature grid of a large image has many cells even for few features. The limit keeps memory in
 // proportion to the file.
 void check_grid_memory(const CameraModel& camera,
                        std::size_t keyframes,
@@ -55,7 +55,7 @@ void write_keyframes(SectionWriter& out, const SessionParts& parts, const std::s
   }
 }
 
-// `place` begins messages.
+// Messages begin with `place`.
 void write_parts(const SessionParts& parts,
                  const SectionWriter::Sink& sink,
                  const std::string& place) {

@@ -19,7 +19,7 @@ SubmapId main_submap(const Session& session, std::size_t first_frame) {
   for (std::size_t i = first_frame; i < session.frames.size(); ++i) {
     ++frames[submap_of(session, session.frames[i])];
   }
-  // The first of the greatest, and the map is sorted.
+  // The first of equal maxima in the sorted map: the lowest submap.
   const auto most = std::ranges::max_element(
       frames, {}, [](const std::pair<const SubmapId, std::size_t>& entry) { return entry.second; });
   return most == frames.end() ? SubmapId{} : most->first;

@@ -20,7 +20,7 @@ bool is_known(const MapParts& map, KeyframeId id) {
   return dropped != map.dropped_keyframes.end() && dropped->first == id;
 }
 
-// Null when there is nothing wrong with it.
+// A description of the first mistake; null if there is none.
 const char* cloud_problem(const CompactCloud& cloud) {
   const std::size_t size = cloud.size();
   if (cloud.colors.size() != size || (!cloud.labels.empty() && cloud.labels.size() != size)) {

@@ -9,7 +9,7 @@
 
 namespace stillmap {
 
-/// A session with its map in parts.
+/// A session whose map is in parts.
 struct SessionParts {
   CameraModel camera;
   std::string config_yaml;
@@ -21,8 +21,9 @@ struct SessionParts {
 
 [[nodiscard]] SessionParts parts_of(const Session& session);
 
-/// Throws Error, in one line that starts with `place`, for all that is not the map, if it refers to
-/// nothing or holds what means nothing. See check_parts() and Map::from_parts for the map itself.
+/// Checks everything but the map: throws Error, in one line that begins with `place`, for
+/// references to missing items and for impossible values. check_parts() and Map::from_parts check
+/// the map.
 void check_records(const SessionParts& parts, const std::string& place);
 
 }  // namespace stillmap

@@ -17,7 +17,7 @@
 
 namespace stillmap {
 
-/// Features and tracking, which share the group `tracking`.
+/// Settings of features and tracking, which share the group `tracking`.
 struct TrackingConfig {
   OrbConfig orb;
   TrackerConfig tracker;
@@ -29,21 +29,23 @@ struct TrackingConfig {
   }
 };
 
-/// Runs with a camera.
+/// Settings of live runs.
 struct LiveConfig {
   int look_gap_frames = 3;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit(
-        "look_gap_frames",
-        self.look_gap_frames,
-        FieldInfo{
-            "--live: the network looks at no more than one in so many frames", "frames", 1, 1000});
+    visit("look_gap_frames",
+          self.look_gap_frames,
+          common_setting(FieldInfo{
+              "least number of frames between two frames given to the network in a live run",
+              "frames",
+              1,
+              1000}));
   }
 };
 
-/// All settings of a run. The defaults need no file.
+/// All settings of a system, with their defaults.
 struct SystemConfig {
   std::uint32_t seed = 0;
   TrackingConfig tracking;
@@ -58,7 +60,7 @@ struct SystemConfig {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("seed", self.seed, FieldInfo{"of every random choice"});
+    visit("seed", self.seed, common_setting(FieldInfo{"seed of all random choices (RANSAC)"}));
     visit.group("tracking", self.tracking);
     visit.group("measurement", self.measurement);
     visit.group("dynamics", self.dynamics);
@@ -70,13 +72,13 @@ struct SystemConfig {
     visit.group("live", self.live);
   }
 
-  /// Rules that concern several values. Throws Error naming the keys.
+  /// Checks the rules between several values. Throws Error naming the keys.
   void check() const;
 };
 
-/// What features measure where loops are judged and the submap is adjusted to them. Over a whole
-/// loop depth has to count for what it is: pixels alone hardly tell a step aside from a turn.
-/// Tracking trusts it less, since the sensor's errors are alike from frame to frame.
+/// The measurement model of loop verification and global adjustment. Over a loop depth must have
+/// its full weight, since pixels alone hardly distinguish a step to the side from a turn. Tracking
+/// gives depth less weight, because the sensor's errors are similar from frame to frame.
 [[nodiscard]] MeasurementModel loop_measurement_model(const SystemConfig& config,
                                                       std::vector<float> level_scales);
 

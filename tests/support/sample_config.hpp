@@ -26,7 +26,7 @@ struct TrackingConfig {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("features", self.features, FieldInfo{"corners a frame", "", 100, 10000});
+    visit("features", self.features, common_setting(FieldInfo{"corners a frame", "", 100, 10000}));
     visit("max_depth_m", self.max_depth_m, FieldInfo{"farthest depth used", "m", 0.1, 20.0});
     visit.group("loop", self.loop);
   }
@@ -44,7 +44,7 @@ struct Config {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("seed", self.seed, FieldInfo{"start of all random numbers"});
+    visit("seed", self.seed, common_setting(FieldInfo{"start of all random numbers"}));
     visit("offset", self.offset, FieldInfo{"any whole number"});
     visit("gain", self.gain, FieldInfo{"any number", "1/s"});
     visit("dynamics", self.dynamics, FieldInfo{.meaning = "method", .choices = {"off", "full"}});

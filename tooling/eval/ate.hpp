@@ -21,14 +21,15 @@ struct AtePair {
 
 struct AteResult {
   Statistics translation_m;
-  Eigen::Isometry3d T_groundtruth_estimate;  ///< takes the estimate's world to the ground truth's
-  std::vector<AtePair> pairs;                ///< in the order of their stamps
+  Eigen::Isometry3d
+      T_groundtruth_estimate;  ///< from the world frame of the estimate to that of the ground truth
+  std::vector<AtePair> pairs;  ///< in the order of their stamps
 };
 
-/// Absolute trajectory error as the TUM RGB-D benchmark's script gives it: positions paired by
-/// stamps less than 0.02 s apart (see associate()), the estimate moved by the rotation and
-/// translation that fit best (no scale), statistics of the distances left. Nothing with fewer than
-/// three pairs, which leave the alignment open.
+/// The absolute trajectory error as the script of the TUM RGB-D benchmark computes it: positions
+/// are paired by stamps less than 0.02 s apart (see associate()), the estimate is aligned by the
+/// best rotation and translation (no scale), and the remaining distances are summarised. Nothing
+/// with fewer than three pairs, which do not determine the alignment.
 [[nodiscard]] std::optional<AteResult> absolute_trajectory_error(const Trajectory& groundtruth,
                                                                  const Trajectory& estimate);
 

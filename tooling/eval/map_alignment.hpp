@@ -9,12 +9,12 @@
 
 namespace stillmap {
 
-/// T_groundtruth_estimate: where a map lies in truth, by the trajectory of its run.
+/// T_groundtruth_estimate: aligns a map with the ground truth by the trajectory of its run.
 ///
-/// In closed form as for the absolute trajectory error, with the same pairs, but the cameras' axes
-/// count too, each as a point a metre away on both sides: positions alone leave the rotation open
-/// where a camera hardly moves or moves along a line, and at some metres from it the map would be
-/// nowhere near. Nothing with fewer than three pairs.
+/// A closed form with the pairs of the absolute trajectory error, in which the axes of the cameras
+/// count, too, each as two points one metre away on both sides. Positions alone do not determine
+/// the rotation of a camera that hardly moves or moves along a line, and the map would be far off
+/// at some metres' distance. Nothing with fewer than three pairs.
 [[nodiscard]] std::optional<Eigen::Isometry3d> map_alignment(const Trajectory& groundtruth,
                                                              const Trajectory& estimate);
 

@@ -9,10 +9,10 @@
 
 namespace stillmap {
 
-/// A PLY that passes check_extent(). Throws Error naming the file.
+/// Reads a PLY that passes check_extent(). Throws Error naming the file.
 [[nodiscard]] PointCloud read_map(const std::filesystem::path& file);
 
-/// Throws Error naming the file, also for a static surface without points.
+/// Reads the true surfaces. Throws Error naming the file, also for a static surface without points.
 [[nodiscard]] MapTruth read_map_truth(const std::filesystem::path& static_file,
                                       const std::optional<std::filesystem::path>& dynamic_file);
 

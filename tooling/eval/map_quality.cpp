@@ -48,7 +48,8 @@ Cell cell_of(const Eigen::Vector3f& p) {
   return {index(p.x()), index(p.y()), index(p.z())};
 }
 
-// Sizes of the groups of cells that touch by face, edge or corner. The cells are sorted and unique.
+// The sizes of the groups of cells that touch by face, edge or corner. The cells must be sorted and
+// unique.
 std::vector<std::size_t> group_sizes(const std::vector<Cell>& cells) {
   std::vector<bool> seen(cells.size(), false);
   std::vector<std::size_t> sizes, open;

@@ -13,8 +13,8 @@
 
 namespace stillmap {
 
-// The objects that report.json and `stillmap evaluate --json` hold. Keys stay in this order; what
-// is not known is null.
+// The JSON objects of report.json and `stillmap evaluate --json`. Keys stay in this order; unknown
+// values are null.
 
 /// `{rmse, mean, median, std, min, max, pairs}`, metres.
 [[nodiscard]] nlohmann::ordered_json ate_json(const std::optional<AteResult>& ate);

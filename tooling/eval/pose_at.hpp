@@ -7,9 +7,9 @@
 
 namespace stillmap {
 
-/// The pose at a time, interpolated between the poses before and after it; before the first and
-/// after the last pose that pose itself. Nothing when none of the trajectory is less than
-/// kMaxStampDifferenceS away in time.
+/// The pose at a time, interpolated between the poses before and after it. Before the first and
+/// after the last pose it is that pose. Nothing when no pose is less than kMaxStampDifferenceS away
+/// in time.
 [[nodiscard]] std::optional<Eigen::Isometry3d> pose_at(const Trajectory& trajectory,
                                                        double stamp_s);
 

@@ -9,8 +9,8 @@
 
 namespace stillmap {
 
-/// Indices (into the ground truth, into the estimate) of poses less than kMaxStampDifferenceS
-/// apart, each used once: see associate().
+/// The index pairs (ground truth, estimate) of poses less than kMaxStampDifferenceS apart. Each
+/// pose is used at most once; see associate().
 [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> pair_poses(
     const Trajectory& groundtruth, const Trajectory& estimate);
 

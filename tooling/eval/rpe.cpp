@@ -11,9 +11,8 @@
 namespace stillmap {
 namespace {
 
-// The pose nearest in time, by bisection. Of two equally near ones it is the one that bisection
-// meets first: stamps that are rounded make such ties frequent, and the benchmark's figures depend
-// on them.
+// The pose nearest in time, by bisection. Of two equally near poses it is the one that bisection
+// meets first. Rounded stamps make such ties frequent, and the benchmark's figures depend on them.
 std::size_t nearest_index(const Trajectory& trajectory, double seconds) {
   std::size_t begin = 0, end = trajectory.size();
   std::size_t best = 0;
@@ -47,7 +46,7 @@ double script_angle_deg(const Eigen::Matrix3d& rotation) {
   return std::acos(cosine) * 180.0 / std::numbers::pi;
 }
 
-// Ground truth near in time, where there is any.
+// The ground-truth pose near in time, if any.
 class NearGroundtruth {
  public:
   explicit NearGroundtruth(const Trajectory& trajectory)
@@ -75,7 +74,7 @@ std::optional<RpeResult> relative_pose_error(const Trajectory& groundtruth,
   std::vector<double> errors_m, errors_deg;
   for (const StampedPose& from : estimate) {
     const std::size_t j = nearest_index(estimate, from.stamp.seconds + delta_s);
-    if (j + 1 == estimate.size()) continue;  // nothing tells whether it is delta_s later
+    if (j + 1 == estimate.size()) continue;  // it may be less than delta_s later
     const StampedPose& to = estimate[j];
     const std::optional<Eigen::Isometry3d> truth_from = truth.pose(from.stamp.seconds);
     const std::optional<Eigen::Isometry3d> truth_to = truth.pose(to.stamp.seconds);

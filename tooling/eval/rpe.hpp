@@ -16,15 +16,15 @@ struct RpeResult {
   Statistics rotation_deg;
 };
 
-/// Relative pose error as the TUM RGB-D benchmark's script gives it with a fixed delta in seconds:
-/// each estimated pose with the one nearest to `delta_s` later, against the ground-truth poses
-/// nearest in time to both. Pairs that end at the last pose of the estimate are left out, and so
-/// are those whose ground truth is farther in time than twice the median interval of the ground
-/// truth. All pairs count (the script draws 10000 at random from more). Nothing with fewer than two
-/// pairs, or with fewer than two ground-truth poses.
+/// The relative pose error as the script of the TUM RGB-D benchmark computes it with a fixed delta
+/// in seconds: each estimated pose is paired with the pose nearest to `delta_s` later, and compared
+/// with the ground-truth poses nearest in time to both. Pairs that end at the last estimated pose
+/// are left out, as are pairs whose ground truth is farther in time than twice the median interval
+/// of the ground truth. All pairs count (the script draws 10000 at random from more). Nothing with
+/// fewer than two pairs, or with fewer than two ground-truth poses.
 ///
-/// The angle comes from the arc cosine of the trace, as in the script, which resolves no angle
-/// below about 1e-6 degrees.
+/// The angle comes from the arc cosine of the trace, as in the script; angles below about 1e-6
+/// degrees are not resolved.
 [[nodiscard]] std::optional<RpeResult> relative_pose_error(const Trajectory& groundtruth,
                                                            const Trajectory& estimate,
                                                            double delta_s = 1.0);

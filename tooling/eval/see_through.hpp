@@ -18,29 +18,29 @@ inline constexpr double kSeeThroughMargin_m = 0.05;
 inline constexpr double kSeeThroughSigmas = 3;
 /// ... this times the square of the depth, 1/m.
 inline constexpr double kDepthSigma = 0.0015;
-/// So many frames that see through a point show that it is not there.
+/// The number of frames seeing through a point that prove the point wrong.
 inline constexpr std::size_t kSeeThroughFrames = 3;
 
-/// What is left in a map of things that are not there, as far as frames tell.
+/// The residue of a map: points that frames prove wrong.
 struct Residue {
-  std::size_t points = 0;        ///< of the map
-  std::size_t seen_through = 0;  ///< of these, by at least kSeeThroughFrames frames
+  std::size_t points = 0;        ///< points of the map
+  std::size_t seen_through = 0;  ///< points seen through by at least kSeeThroughFrames frames
   std::size_t frames = 0;
 
-  /// Of the points; 0 for no points.
+  /// The share of the points that are seen through; 0 without points.
   [[nodiscard]] double ratio() const {
     return points > 0 ? static_cast<double>(seen_through) / static_cast<double>(points) : 0.0;
   }
 };
 
-/// Tests a map against the depth images of a sequence, which needs no truth.
+/// Tests a map against the depth images of a sequence. Needs no truth.
 class SeeThroughTest {
  public:
-  /// Points are in the world of the frames' poses, finite.
+  /// `points` are finite and in the world frame of the frames' poses.
   SeeThroughTest(const CameraModel& camera, std::vector<Eigen::Vector3f> points_world);
 
-  /// `depth` has the camera's size. The measured depth of a point is that of the raw pixel whose
-  /// centre is nearest to where the point falls.
+  /// Counts one frame. `depth` has the camera's size. The measured depth at a point is that of the
+  /// raw pixel whose centre is nearest to the projected point.
   void add(const DepthImage& depth, const Eigen::Isometry3d& T_world_camera);
 
   [[nodiscard]] Residue result() const;
@@ -49,9 +49,10 @@ class SeeThroughTest {
   [[nodiscard]] bool sees_through(const DepthImage& depth, const Eigen::Vector3d& p_camera) const;
 
   CameraModel camera_;
-  Eigen::AlignedBox2d ideal_image_px_;  ///< where raw pixels fall without distortion
+  Eigen::AlignedBox2d ideal_image_px_;  ///< bounds of the ideal pixels of the image
   std::vector<Eigen::Vector3f> points_;
-  std::vector<std::uint8_t> times_;  ///< of each point, up to kSeeThroughFrames
+  std::vector<std::uint8_t>
+      times_;  ///< frames that see through each point, up to kSeeThroughFrames
   std::size_t frames_ = 0;
 };
 

@@ -16,16 +16,18 @@ struct FloorPlane {
   [[nodiscard]] double height_m(const Eigen::Vector3d& p) const { return up.dot(p) + offset_m; }
 };
 
-/// Finds the floor in a map whose vertical is not known: of the planes with flat patches of surface
-/// on them (RANSAC, always the same draws, then least squares) the one with the most surface that
-/// is at least 20 cm below every camera, within 50 degrees of what the cameras on average hold to
-/// be horizontal, and has at most one part in twenty of the map more than 10 cm below it. Nothing
-/// when none has half a square metre: the floor was hardly seen, or the cameras were held sideways.
+/// Finds the floor of a map whose vertical is unknown. Candidates are planes with flat patches of
+/// surface (RANSAC with fixed draws, then least squares) that are at least 20 cm below every
+/// camera, within 50 degrees of the horizontal plane of the cameras on average, and have at most
+/// one twentieth of the map more than 10 cm below them. The floor is the candidate with the most
+/// surface. Nothing when no candidate has half a square metre: the floor was hardly seen, or the
+/// cameras were held sideways.
 [[nodiscard]] std::optional<FloorPlane> find_floor(
     std::span<const Eigen::Vector3f> p_world, std::span<const Eigen::Isometry3d> T_world_camera);
 
-/// T_grid_world of the frame that navigation uses: z up, 0 on the floor; the origin below the first
-/// camera, x where that camera looks (where it looks straight down: where its upper edge points).
+/// T_grid_world for the coordinate frame of navigation: z up, 0 on the floor, origin below the
+/// first camera, x in the direction in which that camera looks (if it looks straight down, that of
+/// its upper edge).
 [[nodiscard]] Eigen::Isometry3d floor_frame(const FloorPlane& floor,
                                             const Eigen::Isometry3d& T_world_camera);
 

@@ -19,8 +19,8 @@ constexpr std::size_t kMaxBlocks = std::size_t{1} << 15U;
 struct VoxelEvidence {
   std::uint16_t points = 0;
   std::uint16_t views = 0;
-  std::uint32_t last_view = 0;  // number of the view that counted last, from 1
-  std::uint32_t last_ray = 0;   // number of the view that last sent a ray here
+  std::uint32_t last_view = 0;  // number of the last view that was counted, from 1
+  std::uint32_t last_ray = 0;   // number of the last view with a ray through this voxel
 };
 
 void check_reach(const Eigen::Vector3d& p, double resolution_m) {
@@ -45,13 +45,13 @@ class SpaceObserver {
   void add_view(const Eigen::Isometry3d& T_world_camera, const CameraModel& camera) {
     ++view_;
     check_reach(T_world_camera.translation(), options_.resolution_m);
-    // The margin only chooses where rays go: they end at the first occupied voxel anyway.
+    // The margin only selects rays; a ray ends at the first occupied voxel anyway.
     const VisibilityOptions visibility = {.point_radius_m = 0.375 * options_.resolution_m,
                                           .margin_m = 4 * options_.resolution_m};
     for (const std::uint32_t i : visible_points(points_, T_world_camera, camera, visibility)) {
       const Eigen::Vector3d p = points_[i].cast<double>();
       VoxelEvidence& end = evidence_.at(voxel_of(p, options_.resolution_m));
-      if (end.last_ray == view_) continue;  // one ray a voxel is enough
+      if (end.last_ray == view_) continue;  // one ray per voxel is enough
       end.last_ray = view_;
       cast(T_world_camera.translation(), p);
     }

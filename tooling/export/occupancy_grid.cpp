@@ -14,11 +14,11 @@ constexpr int kMinPoints = 2;
 constexpr double kMinSeenShare = 0.25;
 constexpr double kMaxCells = 33554432;  // 2^25
 
-// What a column of voxels says.
+// Counts in a column of voxels.
 struct Column {
   int points = 0;       // in the band
   int seen_voxels = 0;  // in the band
-  int seen_low = 0;     // of them in its lowest third
+  int seen_low = 0;     // seen voxels in the lowest third of the band
   bool floor = false;
 };
 
@@ -46,7 +46,7 @@ double lowest_third_m(const HeightBand& band) {
   return band.min_m + (band.max_m - band.min_m) / 3;
 }
 
-// Voxels are counted from the lower end of the band, so that none lies on both sides of it.
+// Voxels are counted from the lower end of the band, so that no voxel straddles it.
 void add(Column& column, const SpaceVoxel& voxel, const HeightBand& band, double resolution_m) {
   const double bottom_m = band.min_m + voxel.index.z() * resolution_m;
   if (voxel.index.z() < 0) {
@@ -60,7 +60,7 @@ void add(Column& column, const SpaceVoxel& voxel, const HeightBand& band, double
   }
 }
 
-// Names may hold anything; YAML's double quotes take all but these.
+// A name may have any character. These two have to be escaped within YAML's double quotes.
 std::string quoted(const std::string& text) {
   std::string result = "\"";
   for (const char c : text) {
@@ -74,7 +74,7 @@ std::string quoted(const std::string& text) {
   return result + '"';
 }
 
-// Tells ground that no camera was turned to from ground that something hid.
+// Distinguishes ground that no camera faced from ground that an obstacle hid.
 class GroundView {
  public:
   GroundView(std::span<const Eigen::Isometry3d> T_world_camera,
@@ -97,7 +97,7 @@ class GroundView {
   std::vector<Eigen::Isometry3d> T_camera_world_;
 };
 
-// The columns of space whose z = 0 is the band's lower end.
+// The columns of observed space with z = 0 at the lower end of the band.
 class Columns {
  public:
   Columns(const ObservedSpace& space, const HeightBand& band)

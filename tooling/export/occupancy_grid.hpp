@@ -15,7 +15,7 @@ namespace stillmap {
 
 enum class GridCell : std::uint8_t { kUnknown, kFree, kOccupied };
 
-/// The ground as squares, seen from above; frame as in floor_frame().
+/// The ground as square cells, seen from above, in the coordinate frame of floor_frame().
 struct OccupancyGrid {
   int width = 0;   ///< cells along x
   int height = 0;  ///< cells along y
@@ -29,31 +29,32 @@ struct OccupancyGrid {
   }
 };
 
-/// Heights above the floor in which something is in a robot's way.
+/// The interval of heights above the floor in which surface is an obstacle for a robot.
 struct HeightBand {
   double min_m = 0.1;
   double max_m = 1.8;
 };
 
-/// What a robot needs to know of the ground, from points and cameras in the floor's frame (z up, 0
-/// on the floor; see floor_frame) by what observe_space makes of them.
+/// The navigation grid from points and cameras in the floor's coordinate frame (z up, 0 on the
+/// floor; see floor_frame), by observe_space.
 ///
-/// Occupied: the column has at least two thinned points in the band (one alone may be noise). Else
-/// free: floor was seen there, or through at least a quarter of the band, unless the lowest third
-/// of the band was in view but hidden. Else unknown. As large as what is known; of size 0 when
-/// nothing is. Throws Error, naming --resolution, as observe_space does and beyond 2^25 cells.
+/// A cell is occupied if its column has at least two thinned points in the band (one alone may be
+/// noise). Else it is free if floor was seen there, or free space in at least a quarter of the
+/// band, unless the lowest third of the band was in view but hidden. Else it is unknown. The grid
+/// covers the known cells; without any it has size 0. Throws Error, naming --resolution, as
+/// observe_space does, and beyond 2^25 cells.
 [[nodiscard]] OccupancyGrid make_occupancy_grid(std::span<const Eigen::Vector3f> p_grid,
                                                 std::span<const Eigen::Isometry3d> T_grid_camera,
                                                 const CameraModel& camera,
                                                 const SpaceOptions& options,
                                                 const HeightBand& band);
 
-/// The grid as an image of ROS's map_server: binary PGM, top row = highest y, 0 occupied, 254 free,
-/// 205 unknown.
+/// The grid as an image for map_server of ROS: binary PGM, top row = highest y, 0 occupied, 254
+/// free, 205 unknown.
 [[nodiscard]] std::string encode_pgm(const OccupancyGrid& grid);
 
-/// The YAML beside it. `T_grid_map`, which map_server ignores, is the 3 x 4 matrix, row by row,
-/// that takes points of the run's map to the grid's frame.
+/// The YAML for that image. `T_grid_map`, which map_server ignores, is the 3 x 4 matrix, row by
+/// row, that takes points of the map to the coordinate frame of the grid.
 [[nodiscard]] std::string format_grid_yaml(const OccupancyGrid& grid,
                                            const std::string& image_name,
                                            const Eigen::Isometry3d& T_grid_map);

@@ -11,7 +11,7 @@
 namespace stillmap {
 namespace {
 
-constexpr int kOriginKey = 32768;  // OctoMap's key of the voxel that begins at 0
+constexpr int kOriginKey = 32768;  // key in OctoMap of the voxel that begins at 0
 
 octomap::OcTreeKey key_of(const Eigen::Vector3i& index) {
   const Eigen::Vector3i key = index.array() + kOriginKey;
@@ -27,7 +27,7 @@ float log_odds(const octomap::OcTree& tree, const SpaceVoxel& voxel) {
                           : std::max(views * tree.getProbMissLog(), tree.getClampingThresMinLog());
 }
 
-// What OcTree::writeBinary writes; that prints to the terminal too.
+// The bytes of OcTree::writeBinary, which also prints to the terminal.
 void write_binary(std::ostream& stream, octomap::OcTree& tree) {
   tree.toMaxLikelihood();
   tree.prune();
@@ -47,7 +47,7 @@ void write_full(std::ostream& stream, const octomap::OcTree& tree) {
 std::string encode_octree(const ObservedSpace& space, OctreeFormat format) {
   octomap::OcTree tree(space.resolution_m);
   for (const SpaceVoxel& voxel : space.voxels) {
-    constexpr bool kLazy = true;  // inner nodes are worked out once, below
+    constexpr bool kLazy = true;  // inner nodes are computed once, below
     tree.setNodeValue(key_of(voxel.index), log_odds(tree, voxel), kLazy);
   }
   tree.updateInnerOccupancy();

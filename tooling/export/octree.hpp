@@ -7,14 +7,14 @@
 
 namespace stillmap {
 
-/// kBinary: OctoMap's .bt, occupied or free. kFull: its .ot, with probabilities.
+/// kBinary: .bt of OctoMap, occupied or free. kFull: .ot of OctoMap, with probabilities.
 enum class OctreeFormat { kBinary, kFull };
 
-/// An OctoMap file of observed space, with the tree type `OcTree`: that is what octomap_server,
-/// MoveIt and octovis read; a ColorOcTree only octovis does without being rebuilt.
+/// Observed space as an OctoMap file with the tree type `OcTree`, which octomap_server, MoveIt and
+/// octovis read. Only octovis reads a ColorOcTree without being rebuilt.
 ///
-/// Probabilities are those of OctoMap's sensor model, one hit (0.7) or miss (0.4) for each camera
-/// that saw the voxel, within its bounds 0.12 and 0.97; an occupied voxel counts at least one hit.
+/// Probabilities follow the sensor model of OctoMap: one hit (0.7) or miss (0.4) for each camera
+/// that saw the voxel, clamped to 0.12 and 0.97. An occupied voxel has at least one hit.
 [[nodiscard]] std::string encode_octree(const ObservedSpace& space, OctreeFormat format);
 
 }  // namespace stillmap

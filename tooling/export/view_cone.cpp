@@ -10,14 +10,14 @@ namespace {
 
 constexpr double kMinDepthM = 0.05;
 
-// Every ideal pixel of the image's border lies outside of it or on its edge.
+// Every ideal pixel of the image's border is outside the rectangle or on its edge.
 Eigen::AlignedBox2d inner_rectangle(const CameraModel& camera) {
   const double right = camera.width_px - 1.0;
   const double bottom = camera.height_px - 1.0;
   Eigen::AlignedBox2d box(Eigen::Vector2d(0, 0), Eigen::Vector2d(right, bottom));
   if (!camera.distorted()) return box;
   const auto ideal = [&](double u, double v) { return camera.undistort({u, v}); };
-  // No farther than an image's size beyond the image: a wild distortion has no bounds.
+  // At most one image size beyond the image, because an extreme distortion has no bounds.
   box =
       Eigen::AlignedBox2d(Eigen::Vector2d(-right, -bottom), Eigen::Vector2d(2 * right, 2 * bottom));
   constexpr int kSteps = 32;

@@ -12,7 +12,7 @@ namespace stillmap {
 namespace {
 
 constexpr double kCellPx = 4.0;
-constexpr double kMaxRadiusPx = 64.0;  // a disc at the lens must not cover all of the image
+constexpr double kMaxRadiusPx = 64.0;  // a disc at the lens must not cover the whole image
 
 struct Projected {
   std::uint32_t index = 0;

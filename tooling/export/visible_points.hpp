@@ -12,12 +12,12 @@
 namespace stillmap {
 
 struct VisibilityOptions {
-  double point_radius_m = 0.02;  ///< each point stands for a disc of that size, facing the camera
-  double margin_m = 0.2;  ///< how far behind the front-most disc a point still counts as seen
+  double point_radius_m = 0.02;  ///< a point counts as a disc of this radius, facing the camera
+  double margin_m = 0.2;  ///< distance behind the front-most disc within which a point is visible
 };
 
-/// Indices, ascending, of the points that a camera sees before all others, by a z-buffer in cells
-/// of 4 pixels. What is not in its ViewCone neither counts nor hides others.
+/// The indices, ascending, of the points that a camera sees in front of all others, by a z-buffer
+/// with cells of 4 pixels. Points outside its ViewCone are invisible and hide nothing.
 [[nodiscard]] std::vector<std::uint32_t> visible_points(std::span<const Eigen::Vector3f> p_world,
                                                         const Eigen::Isometry3d& T_world_camera,
                                                         const CameraModel& camera,

@@ -11,13 +11,13 @@
 
 namespace stillmap {
 
-/// A value per voxel of space, kept in blocks of 16 x 16 x 16 where any was asked for.
+/// A value per voxel of space, in blocks of 16 x 16 x 16 that are allocated on first use.
 template <class T>
 class VoxelBlocks {
  public:
   static constexpr int kEdge = 16;
 
-  /// The voxel's value, made as T{} when it is not there. References stay valid.
+  /// The value of the voxel, T{} at first. References stay valid.
   [[nodiscard]] T& at(const Eigen::Vector3i& voxel) {
     const Key key = {voxel.x() >> 4, voxel.y() >> 4, voxel.z() >> 4};
     if (last_ == nullptr || key != last_key_) {
@@ -32,8 +32,8 @@ class VoxelBlocks {
 
   [[nodiscard]] std::size_t block_count() const { return blocks_.size(); }
 
-  /// Calls visit(index, value) for all voxels of all blocks, in an order that depends on nothing
-  /// but which blocks there are.
+  /// Calls visit(index, value) for all voxels of all blocks, in an order that depends only on the
+  /// set of blocks.
   template <class Visit>
   void for_each(const Visit& visit) const {
     for (const auto& [key, block] : blocks_) {
@@ -51,7 +51,8 @@ class VoxelBlocks {
 
   std::map<Key, std::vector<T>> blocks_;
   Key last_key_{};
-  std::vector<T>* last_ = nullptr;  // of last_key_: neighbours are asked for one after the other
+  std::vector<T>* last_ =
+      nullptr;  // block of last_key_; neighbours are mostly used one after the other
 };
 
 }  // namespace stillmap

@@ -7,13 +7,13 @@
 
 namespace stillmap {
 
-/// The voxel that a point lies in: voxel i covers [i, i + 1) * edge along each axis.
+/// The voxel of a point: voxel i covers [i, i + 1) * edge along each axis.
 [[nodiscard]] inline Eigen::Vector3i voxel_of(const Eigen::Vector3d& p, double edge_m) {
   return (p / edge_m).array().floor().cast<int>();
 }
 
-/// The voxels that the line from one point to another passes, in order, the first and the last
-/// included (Amanatides and Woo 1987). Neighbours share a face.
+/// The voxels on the line from one point to another, in order, including the first and the last
+/// (Amanatides and Woo 1987). Consecutive voxels share a face.
 class VoxelWalk {
  public:
   VoxelWalk(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double edge_m)
@@ -32,9 +32,9 @@ class VoxelWalk {
   [[nodiscard]] const Eigen::Vector3i& voxel() const { return at_; }
   [[nodiscard]] bool at_end() const { return (left_.array() == 0).all(); }
 
-  /// Not at the end.
+  /// Must not be called at the end.
   void advance() {
-    // Steps left are counted, so that rounding can move a step but never miss the last voxel.
+    // Remaining steps are counted, so that rounding can move a step but never miss the last voxel.
     int axis = -1;
     for (int i = 0; i < 3; ++i) {
       if (left_[i] > 0 && (axis < 0 || next_[i] < next_[axis])) axis = i;
@@ -48,8 +48,9 @@ class VoxelWalk {
   Eigen::Vector3i at_;
   Eigen::Vector3i left_;
   Eigen::Vector3i step_ = Eigen::Vector3i::Zero();
-  Eigen::Vector3d next_ = Eigen::Vector3d::Zero();   // part of the line where the axis steps next
-  Eigen::Vector3d width_ = Eigen::Vector3d::Zero();  // and between two of its steps
+  Eigen::Vector3d next_ =
+      Eigen::Vector3d::Zero();  // position on the line of the next step of each axis
+  Eigen::Vector3d width_ = Eigen::Vector3d::Zero();  // distance between two steps of each axis
 };
 
 }  // namespace stillmap

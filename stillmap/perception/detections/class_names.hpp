@@ -12,7 +12,8 @@ namespace stillmap {
 
 [[nodiscard]] bool is_coco_class(std::string_view name);
 
-/// COCO's name of a class that VOC calls otherwise ("tvmonitor" -> "tv"); any other name unchanged.
+/// The COCO name of a class that VOC names differently ("tvmonitor" -> "tv"); any other name
+/// unchanged.
 [[nodiscard]] std::string coco_name(std::string_view name);
 
 }  // namespace stillmap

@@ -11,8 +11,8 @@
 
 namespace stillmap {
 
-/// A rectangle of pixels, from (x0, y0) to just before (x1, y1): the pixel in column u and row v
-/// covers [u, u + 1) x [v, v + 1). It may reach beyond the image.
+/// An axis-aligned rectangle [x0, x1) x [y0, y1) in pixels: the pixel in column u and row v covers
+/// [u, u + 1) x [v, v + 1). It may reach beyond the image.
 struct PixelBox {
   double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 
@@ -22,11 +22,11 @@ struct PixelBox {
   bool operator==(const PixelBox&) const = default;
 };
 
-/// Something that a network, or whatever stands in for one, has found in an image.
+/// An object that a network, or a substitute for one, found in an image.
 struct DetectedObject {
-  int id = 0;              ///< 1 to 255, unique in its frame; says nothing across frames
-  std::string class_name;  ///< of COCO where that has one
-  float score = 0;         ///< how sure it is, in [0, 1]
+  int id = 0;              ///< 1 to 255, unique in its frame; unrelated to ids in other frames
+  std::string class_name;  ///< the COCO name if there is one
+  float score = 0;         ///< confidence of the network, in [0, 1]
   PixelBox box;            ///< not empty
 
   bool operator==(const DetectedObject&) const = default;
@@ -40,7 +40,7 @@ struct ObjectMask {
   explicit ObjectMask(cv::Mat1b ids) : mat(std::move(ids)) {}
 };
 
-/// What was found in one colour image.
+/// The detections of one colour image.
 struct FrameDetections {
   Stamp stamp;  ///< of the colour image
   std::vector<DetectedObject> objects;

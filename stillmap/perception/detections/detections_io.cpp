@@ -24,7 +24,7 @@ fs::path list_path(const fs::path& folder) {
   return folder / "detections.jsonl";
 }
 
-// The stamp is a plain number: the file is in this folder.
+// A stamp is a plain number, so that the file cannot be outside this folder.
 fs::path mask_path(const fs::path& folder, const Stamp& stamp) {
   return folder / "masks" / (stamp.text + ".png");
 }
@@ -48,7 +48,7 @@ void check_order(const Stamp& stamp, double previous_s, const std::string& place
       stamp.text);
 }
 
-// The id of some pixel that is no object's; 0 when there is none.
+// An id in the mask that no object has; 0 if there is none.
 int unknown_id(const cv::Mat1b& mask, const std::vector<DetectedObject>& objects) {
   std::array<bool, 256> unknown{};
   for (const std::uint8_t id : mask) unknown[id] = true;
@@ -98,7 +98,7 @@ void DetectionsWriter::add(const FrameDetections& frame) {
   last_stamp_s_ = line.stamp.seconds;
   const fs::path path = mask_path(folder_, line.stamp);
   if (frame.mask.mat.empty()) {
-    remove_file(path);  // of an earlier time
+    remove_file(path);  // from an earlier run
   } else {
     check_mask(frame.mask.mat, line, image_, path, place);
     write_file_atomically(path, encode_mask_png(frame.mask.mat));

@@ -15,19 +15,20 @@
 
 namespace stillmap {
 
-/// Writes a folder of detections: `detections.jsonl` with a line a frame and `masks/<stamp>.png`.
-/// The list comes last, so that a folder that has one is complete.
+/// Writes a folder of detections: `detections.jsonl` with a line per frame, and
+/// `masks/<stamp>.png`. The list is written last, so that a folder with a list is complete.
 class DetectionsWriter {
  public:
-  /// Makes the folder where it is not there, and takes away the list of an earlier time. `image` is
-  /// the size of the sequence's images. Throws Error when the folder cannot be made.
+  /// Creates the folder if necessary and removes an earlier list. `image` is the size of the
+  /// sequence's images. Throws Error when the folder cannot be created.
   DetectionsWriter(std::filesystem::path folder, cv::Size image);
 
-  /// Writes the mask of a frame and keeps its line. Frames come in the order of their stamps.
-  /// Throws Error when the mask cannot be written, and for whatever DetectionsFolder would refuse.
+  /// Writes the mask of a frame and keeps its line. Frames must be in the order of their stamps.
+  /// Throws Error when the mask cannot be written, and for detections that DetectionsFolder would
+  /// refuse.
   void add(const FrameDetections& frame);
 
-  /// Writes the list. Nothing is added afterwards.
+  /// Writes the list. No frame can be added afterwards.
   void finish();
 
  private:
@@ -38,31 +39,31 @@ class DetectionsWriter {
   double last_stamp_s_ = -1.0;
 };
 
-/// A folder of detections, made by DetectionsWriter or by anybody. Safe to use from several
-/// threads.
+/// A folder of detections, written by DetectionsWriter or any other program. Safe to use from
+/// several threads.
 class DetectionsFolder {
  public:
-  /// Reads the list, no mask. `image` is the size of the sequence's images. Throws Error, with file
-  /// and line, for a missing list, one of more than 256 MiB or a million lines, an empty one,
-  /// stamps that do not increase, and whatever parse_detections_line() refuses.
+  /// Reads the list but no masks. `image` is the size of the sequence's images. Throws Error, with
+  /// file and line, for a list that is missing, empty or larger than 256 MiB or a million lines,
+  /// for stamps that do not increase, and for lines that parse_detections_line() refuses.
   [[nodiscard]] static DetectionsFolder open(const std::filesystem::path& folder, cv::Size image);
 
   /// The number of frames, at least one.
   [[nodiscard]] std::size_t size() const { return lines_.size(); }
 
-  /// Whether the list has a frame of this stamp; stamps are equal as numbers: a
-  /// zero more at the end makes no other stamp.
+  /// Whether the list has a frame with this stamp. Stamps are compared as numbers: trailing zeros
+  /// make no difference.
   [[nodiscard]] bool contains(const Stamp& stamp) const;
 
-  /// What was found in a frame; its stamp is the list's. A frame without a file in masks/ is one
-  /// whose objects have no pixels. Throws Error for a stamp that is not in the list, and for a mask
-  /// that is broken, of another size than the images or has an id that its line has not.
+  /// The detections of a frame, with the stamp of the list. The objects of a frame without a file
+  /// in masks/ have no masks. Throws Error for a stamp that is not in the list, and for a mask that
+  /// is damaged, has another size than the images, or has an id that the frame's line lacks.
   [[nodiscard]] FrameDetections at(const Stamp& stamp) const;
 
  private:
   struct Entry {
     DetectionsLine line;
-    std::size_t number = 0;  ///< of the line in the file
+    std::size_t number = 0;  ///< line number in the file
   };
 
   DetectionsFolder() = default;

@@ -12,28 +12,27 @@
 
 namespace stillmap {
 
-/// A line of detections.jsonl: all about a frame but its mask.
+/// A line of detections.jsonl: the detections of a frame without the mask.
 struct DetectionsLine {
   Stamp stamp;
   std::vector<DetectedObject> objects;
 };
 
-/// Reads a line; keys that are not known are skipped. Names of classes that VOC spells otherwise
-/// become COCO's. `place` ("file:line") starts the messages. Throws Error for what is no JSON or
-/// longer than 1 MiB, a stamp that is not the text of a plain number (digits, maybe a point and
-/// digits), an id outside 1 to 255 or that stands twice, a class that is not 1 to 64 printable
-/// characters, a score outside [0, 1], and a box that is empty, reversed, not finite or reaches
-/// farther out of the image than the image is large.
+/// Reads a line. Unknown keys are skipped; class names of VOC become those of COCO. Messages begin
+/// with `place` ("file:line"). Throws Error for text that is no JSON or longer than 1 MiB, a stamp
+/// that is not a plain number (digits, optionally a point and digits), an id outside 1 to 255 or
+/// repeated, a class that is not 1 to 64 printable characters, a score outside [0, 1], and a box
+/// that is empty, reversed, not finite, or farther outside the image than the image is large.
 [[nodiscard]] DetectionsLine parse_detections_line(std::string_view text,
                                                    cv::Size image,
                                                    const std::string& place);
 
-/// The line of a frame, without its end. Numbers are written so that reading gives the same bits;
-/// nothing is checked.
+/// The line of a frame, without its line end. Numbers read back to the same bits. Nothing is
+/// checked.
 [[nodiscard]] std::string format_detections_line(const FrameDetections& frame);
 
-/// Whether a text is digits, maybe followed by a point and digits, at most 32 characters in all:
-/// what may be a stamp and hence the name of a file.
+/// Whether a text is a valid stamp, and hence a safe file name: digits, optionally followed by a
+/// point and digits, at most 32 characters.
 [[nodiscard]] bool is_plain_number(std::string_view text);
 
 }  // namespace stillmap

@@ -10,8 +10,9 @@
 
 namespace stillmap {
 
-/// Fan 2020, Eq. (10): the box of a frame that lies `since_before` frames after one and
-/// `until_after` frames before another that have it. Both at least 1.
+/// The interpolated box of a frame (Fan 2020, section III-C, Eq. (10)) that is `since_before`
+/// frames after the frame of `before` and `until_after` frames before the frame of `after`. Both
+/// are at least 1.
 [[nodiscard]] inline PixelBox box_between(const PixelBox& before,
                                           int since_before,
                                           const PixelBox& after,
@@ -24,7 +25,7 @@ namespace stillmap {
           mix(before.y1, after.y1)};
 }
 
-/// The pixels of the image that a box touches, maybe none.
+/// The pixels of the image that a box touches; possibly none.
 [[nodiscard]] inline cv::Rect pixels_of(const PixelBox& box, cv::Size image) {
   const auto clip = [](double value, int limit) {
     return static_cast<int>(std::clamp(value, 0.0, static_cast<double>(limit)));

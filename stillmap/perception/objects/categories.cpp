@@ -43,7 +43,7 @@ CategoryTable::CategoryTable(const CategoryConfig& config) {
 
 void CategoryTable::add(std::string_view key, const std::string& list, Category category) {
   std::string_view rest = trimmed(list);
-  bool more = !rest.empty();  // an empty list is one: nothing is in this category
+  bool more = !rest.empty();  // an empty list is valid: no class has this category
   while (more) {
     const std::size_t comma = rest.find(',');
     more = comma != std::string_view::npos;

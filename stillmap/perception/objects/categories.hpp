@@ -11,8 +11,8 @@
 
 namespace stillmap {
 
-/// The classes of two categories, names of COCO (or VOC's for the same) separated by commas; every
-/// other class is static.
+/// The classes of two categories: names of COCO (or of VOC for the same classes), separated by
+/// commas. Every other class is static.
 struct CategoryConfig {
   std::string dynamic = "person, bird, cat, dog, horse, sheep, cow, elephant, bear, zebra, giraffe";
   std::string potentially_dynamic =
@@ -25,22 +25,24 @@ struct CategoryConfig {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit(
-        "dynamic", self.dynamic, FieldInfo{"classes that move by themselves, separated by commas"});
+    visit("dynamic",
+          self.dynamic,
+          common_setting(FieldInfo{"classes that move by themselves, separated by commas"}));
     visit("potentially_dynamic",
           self.potentially_dynamic,
-          FieldInfo{"classes that people move, separated by commas; the rest is static"});
+          common_setting(FieldInfo{
+              "classes that people move, separated by commas; all other classes are static"}));
   }
 };
 
-/// Which class is in which category. Names that VOC spells otherwise are the same as COCO's.
+/// The category of each class. A class has the same category under its VOC and its COCO name.
 class CategoryTable {
  public:
-  /// Throws Error, with the key and the name, for a name that COCO does not have, an empty one and
-  /// one that stands twice.
+  /// Throws Error, with the key and the name, for a name that COCO does not have, an empty name,
+  /// and a repeated name.
   explicit CategoryTable(const CategoryConfig& config);
 
-  /// Static for any class that is in no list.
+  /// The category of a class; static for a class in no list.
   [[nodiscard]] Category of(std::string_view class_name) const;
 
  private:

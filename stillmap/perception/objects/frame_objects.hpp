@@ -12,17 +12,17 @@
 
 namespace stillmap {
 
-/// The same object in all frames that have it.
+/// The number of a track: the same object in all its frames has the same number.
 using TrackId = Id<struct TrackTag>;
 
-/// Where the pixels of an object come from.
+/// The source of an object's pixels.
 enum class MaskSource : std::uint8_t {
-  kDetected,  ///< the network, in this very frame; there may be none
-  kCarried,   ///< the nearest frame that has the object, refined by depth
-  kBox,       ///< its box, all of it
+  kDetected,  ///< the network, in this frame; possibly without pixels
+  kCarried,   ///< the mask of the nearest frame with the object, refined by depth
+  kBox,       ///< the whole box of the object
 };
 
-/// The frames that the box of an object comes from which was not detected itself.
+/// The frames from which a filled box comes.
 struct BoxOrigin {
   std::optional<FrameId> before;
   std::optional<FrameId> after;
@@ -30,15 +30,15 @@ struct BoxOrigin {
   bool operator==(const BoxOrigin&) const = default;
 };
 
-/// An object of a frame, with its identity.
+/// An object of a frame with its track.
 struct TrackedObject {
-  DetectedObject detection;  ///< its id is the position in the frame's list, from 1
+  DetectedObject detection;  ///< its id is its position in the list of the frame, from 1
   TrackId track;
-  std::optional<BoxOrigin> filled;  ///< set when the network has missed it
+  std::optional<BoxOrigin> filled;  ///< set if the network missed the object
   MaskSource mask_source = MaskSource::kDetected;
 };
 
-/// The objects of a frame: those detected, in the order of the detections, then those filled in.
+/// The objects of a frame: the detected ones, in the order of the detections, then the filled ones.
 struct FrameObjects {
   FrameId frame;
   Stamp stamp;
@@ -46,7 +46,7 @@ struct FrameObjects {
   ObjectMask mask;                     ///< ids as in `objects`; empty where no object has pixels
 };
 
-/// What object tracking sees of a frame.
+/// The input of object tracking for one frame.
 struct ObservedFrame {
   FrameId id;
   FrameDetections detections;

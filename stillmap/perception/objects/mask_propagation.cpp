@@ -11,7 +11,7 @@
 namespace stillmap {
 namespace {
 
-/// The pixel of the other frame for each of `count` from `first`; -1 outside its image.
+/// The pixel of the other frame for each of `count` pixels from `first` on; -1 outside its image.
 std::vector<int> source_places(int first,
                                int count,
                                double from_begin,
@@ -54,7 +54,7 @@ struct Refinement {
   int kept = 0;
 };
 
-/// Takes out of `patch` what has a depth that does not fit.
+/// Removes the pixels of `patch` whose depth does not fit.
 Refinement refine(PixelPatch& patch, const DepthImage& depth, const DepthInterval& fitting) {
   Refinement counts;
   for (int v = 0; v < patch.area.height; ++v) {
@@ -85,7 +85,7 @@ PropagatedMask propagate_mask(const ObjectView& from,
   PixelPatch patch{area, moved_pixels(from, box, area)};
   const ObjectDepths depths =
       object_depths(from.depth, from.mask, from.id, from_area, rule.outliers);
-  DepthInterval fitting{0.0F, 1e9F};  // nothing known: anything fits
+  DepthInterval fitting{0.0F, 1e9F};  // without known depth every depth fits
   if (depths.interval) {
     const auto margin = static_cast<float>(rule.depth_margin_m);
     fitting = {depths.interval->min_m - margin, depths.interval->max_m + margin};

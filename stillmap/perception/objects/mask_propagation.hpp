@@ -8,20 +8,21 @@
 namespace stillmap {
 
 struct PropagationRule {
-  double depth_margin_m = 0.15;  ///< how far the object may have come nearer or gone since
-  double min_kept_share = 0.25;  ///< of the carried pixels; else the box is all that is known
+  double depth_margin_m = 0.15;  ///< change of depth that the object may have made since
+  double min_kept_share =
+      0.25;  ///< share of the propagated pixels that must remain; else the whole box is used
   OutlierRule outliers;
 };
 
 struct PropagatedMask {
   PixelPatch patch;
-  MaskSource source = MaskSource::kBox;  ///< kCarried, or kBox when the patch is the whole box
+  MaskSource source = MaskSource::kBox;  ///< kCarried, or kBox if the patch is the whole box
 };
 
-/// The pixels that an object of a neighbouring frame has in this one, where its box is `box`: its
-/// mask, moved and scaled as the box, less the pixels whose depth here does not fit its depth
-/// there; pixels without depth stay. All of the box where too little remains or there is no mask.
-/// `from_area` is the object's in its mask.
+/// The pixels in this frame of an object of a neighbouring frame: its mask, moved and scaled from
+/// its box there to `box` here, without the pixels whose depth here does not fit its depth there.
+/// Pixels without depth remain. The whole box if too few pixels remain or there is no mask.
+/// `from_area` is the area of the object in its mask.
 [[nodiscard]] PropagatedMask propagate_mask(const ObjectView& from,
                                             const MaskArea& from_area,
                                             const PixelBox& box,

@@ -16,7 +16,7 @@ constexpr float kBinsPerMetre = 1000.0F;
 constexpr int kBins = 16384;
 constexpr float kFarthest = 16.0F;
 
-/// Depths counted by the millimetre: the median of many without sorting them.
+/// A histogram of depths in millimetres. It gives medians without sorting.
 class DepthHistogram {
  public:
   void add(float depth) {
@@ -35,7 +35,7 @@ class DepthHistogram {
     return bin;
   }
 
-  /// The least distance, in bins, within which of a bin more than half of all lie.
+  /// The least distance from a bin, in bins, within which more than half of all depths lie.
   [[nodiscard]] int median_distance(int bin) const {
     std::size_t within = at(bin);
     int distance = 0;
@@ -59,7 +59,7 @@ bool measured(float depth) {
   return depth > 0 && depth < kFarthest;
 }
 
-/// Calls visit(depth) for every pixel of an id that has depth.
+/// Calls visit(depth) for every pixel of an id with depth.
 template <class Visit>
 void for_depths(const DepthImage& depth,
                 const ObjectMask& mask,
@@ -97,7 +97,7 @@ MaskAreas mask_areas(const ObjectMask& mask) {
     for (int x = 0; x < ids.cols;) {
       const std::uint8_t id = line[x];
       const int begin = x;
-      if (id == 0) {  // most of an image: eight at a time
+      if (id == 0) {  // most pixels have no object: skips eight at a time
         std::uint64_t eight = 0;
         while (x + 8 <= ids.cols && (std::memcpy(&eight, line + x, 8), eight == 0)) x += 8;
       }
@@ -128,13 +128,13 @@ ObjectDepths object_depths(const DepthImage& depth,
   depths.measured = histogram.count();
   depths.median_m = (static_cast<float>(middle) + 0.5F) / kBinsPerMetre;
   depths.mad_m = static_cast<float>(histogram.median_distance(middle)) / kBinsPerMetre;
-  // A bin's width at least: what is all in one bin must not lose its rim.
+  // One bin at least, so that depths within a single bin are not outliers.
   const double reach = std::max({rule.mad_factor * 1.4826 * static_cast<double>(depths.mad_m),
                                  rule.min_reach_m,
                                  1.0 / static_cast<double>(kBinsPerMetre)});
   const auto low = static_cast<float>(static_cast<double>(depths.median_m) - reach);
   const auto high = static_cast<float>(static_cast<double>(depths.median_m) + reach);
-  DepthInterval interval{kFarthest, 0.0F};  // the median lies within, so something will
+  DepthInterval interval{kFarthest, 0.0F};  // not empty: the median is always inside
   for_depths(depth, mask, id, area.bounds, [&](float z) {
     if (z < low || z > high) return;
     interval.min_m = std::min(interval.min_m, z);

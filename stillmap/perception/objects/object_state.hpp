@@ -12,16 +12,16 @@
 
 namespace stillmap {
 
-/// What a class of objects is to a map of what stands still (Fan 2020, section III).
+/// The category of a class: whether its objects move (Fan 2020, section III).
 enum class Category : std::uint8_t {
   kStatic,              ///< stays where it is
-  kPotentiallyDynamic,  ///< moves when somebody moves it
+  kPotentiallyDynamic,  ///< moves when a person moves it
   kDynamic,             ///< moves by itself
 };
 
 [[nodiscard]] std::string_view category_name(Category category);
 
-/// From the nearest to the farthest depth of something, metres.
+/// An interval of depths, metres.
 struct DepthInterval {
   float min_m = 0;
   float max_m = 0;
@@ -32,49 +32,49 @@ struct DepthInterval {
   [[nodiscard]] bool contains(float depth_m) const { return depth_m >= min_m && depth_m <= max_m; }
 };
 
-/// Why an object is taken as dynamic or static in a frame.
+/// The reason why an object is dynamic or static in a frame.
 enum class StateReason : std::uint8_t {
   kStaticClass,   ///< static
-  kBoxesApart,    ///< static: no person is near it in the image
+  kBoxesApart,    ///< static: no person's box intersects its box
   kDepthsApart,   ///< static: a person is before or behind it
-  kNotAsked,      ///< static: interaction is not judged
+  kNotAsked,      ///< static: the mode does not judge interaction
   kDynamicClass,  ///< dynamic: it moves by itself
-  kTouching,      ///< dynamic: a person is at it
-  kDepthUnknown,  ///< dynamic: a person may be at it
-  kMoving,        ///< dynamic: it has been seen to move
+  kTouching,      ///< dynamic: a person interacts with it
+  kDepthUnknown,  ///< dynamic: a person may interact with it
+  kMoving,        ///< dynamic: it was observed to move
 };
 [[nodiscard]] std::string_view reason_name(StateReason reason);
 
 enum class MotionState : std::uint8_t {
-  kUnknown,  ///< not seen often enough, or without depth
+  kUnknown,  ///< seen too seldom, or without depth
   kStill,
   kMoving,
-  kMovedBySomeone,  ///< moving, and a person is at it
+  kMovedBySomeone,  ///< moving, and a person interacts with it
 };
 [[nodiscard]] std::string_view motion_name(MotionState state);
 
-/// How an object moves, in the world frame of the frame's pose.
+/// The motion of an object, in the world frame of the frame's pose.
 struct Motion {
   MotionState state = MotionState::kUnknown;
-  /// Middle of the visible surface, metres; none without depth.
+  /// The middle of the visible surface, metres; none without depth.
   std::optional<Eigen::Vector3d> p_world;
   Eigen::Vector3d velocity_m_s = Eigen::Vector3d::Zero();  ///< 0 where unknown
   double velocity_error_m_s = 0;                           ///< standard error of its length
-  std::optional<TrackId> by;                               ///< who moves it
+  std::optional<TrackId> by;                               ///< the person who moves it
 };
 
-/// An object as a frame shows it: who it is, whether it is taken as dynamic and why, how it moves.
+/// The state of an object in a frame: its track, whether it is dynamic and why, and its motion.
 struct ObjectState {
   TrackId track;
-  std::string class_name;  ///< of COCO where that has one
+  std::string class_name;  ///< the COCO name if there is one
   Category category = Category::kStatic;
   bool dynamic = false;
   StateReason reason = StateReason::kStaticClass;
-  std::optional<TrackId> person;  ///< who touches it, or is before or behind it
+  std::optional<TrackId> person;  ///< the person who interacts with it, or is before or behind it
   PixelBox box;
-  bool filled = false;                  ///< the network has missed it in this frame
+  bool filled = false;                  ///< the network missed it in this frame
   std::optional<DepthInterval> depths;  ///< of its mask, outliers removed; metres
-  float median_depth_m = 0;             ///< of its mask; 0 where nothing is measured
+  float median_depth_m = 0;             ///< of its mask; 0 without depth
   Motion motion;                        ///< unknown in a frame without a pose
 };
 

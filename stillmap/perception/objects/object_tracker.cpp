@@ -13,9 +13,9 @@
 namespace stillmap {
 namespace {
 
-constexpr std::size_t kMostObjects = 255;  // what the ids of a mask can tell apart
+constexpr std::size_t kMostObjects = 255;  // the number of ids of a mask
 
-/// The objects of a frame with their tracks, numbered by their place, and a mask of its own.
+/// The objects of a frame with their tracks, numbered by their position, and a copy of the mask.
 FrameObjects detected_objects(const ObservedFrame& frame, const std::vector<TrackId>& tracks) {
   FrameObjects result{frame.id, frame.detections.stamp, {}, {}};
   std::array<std::uint8_t, 256> place{};
@@ -38,7 +38,7 @@ FrameObjects detected_objects(const ObservedFrame& frame, const std::vector<Trac
   return result;
 }
 
-/// Gives `id` the pixels of a patch that nobody has.
+/// Gives `id` the pixels of a patch that no object has.
 void paint(ObjectMask& mask, const PixelPatch& patch, std::uint8_t id) {
   for (int v = 0; v < patch.area.height; ++v) {
     std::uint8_t* ids = mask.mat[patch.area.y + v] + patch.area.x;
@@ -61,14 +61,14 @@ PixelBox ObjectTracker::predicted_box(const Track& track, double stamp_s) {
   box.y0 += track.velocity.y0 * elapsed;
   box.x1 += track.velocity.x1 * elapsed;
   box.y1 += track.velocity.y1 * elapsed;
-  // Sides that move towards each other must not meet: such a box is where the last one was.
+  // Sides that move towards each other must not meet; then the last box is the prediction.
   return box.width() < 1 || box.height() < 1 ? track.box : box;
 }
 
 void ObjectTracker::see(Track& track, const DetectedObject& object, double stamp_s) const {
   const double elapsed = stamp_s - track.seen_s;
   if (track.sightings > 0) {
-    // The first velocity is all there is; later ones are averaged, as boxes jitter.
+    // The first velocity is taken as it is. Later ones are averaged, because boxes jitter.
     const double gain = track.sightings == 1 ? 1.0 : config_.velocity_gain;
     const auto mix = [&](double& velocity, double from, double to) {
       velocity += gain * ((to - from) / elapsed - velocity);
@@ -100,7 +100,7 @@ std::vector<TrackId> ObjectTracker::associate(const ObservedFrame& frame) {
       if (iou >= config_.min_iou) pairs.push_back({iou, t, o});
     }
   }
-  // Pairs were made in the order of tracks and objects, which decides between equals.
+  // The sort is stable: among equals the order of tracks and objects decides.
   std::ranges::stable_sort(pairs, std::ranges::greater{}, &Pair::iou);
   std::vector<TrackId> found(objects.size());
   std::vector<bool> taken(tracks_.size(), false);
@@ -128,7 +128,7 @@ std::optional<FrameObjects> ObjectTracker::push(ObservedFrame frame) {
   STILLMAP_CHECK(frame.detections.mask.mat.empty() ||
                  frame.detections.mask.mat.size() == frame.depth.mat.size());
   const auto search = static_cast<std::size_t>(config_.search_frames);
-  // A gap may be as long as the search both ways.
+  // A gap may be as long as the searches of both directions together.
   const std::size_t longest_gap = std::max<std::size_t>(2 * search, 1);
   std::erase_if(tracks_, [&](const Track& t) { return pushed_ - t.seen_at > longest_gap; });
   std::vector<TrackId> tracks = associate(frame);
@@ -139,7 +139,7 @@ std::optional<FrameObjects> ObjectTracker::push(ObservedFrame frame) {
   if (pushed_ <= delay) return std::nullopt;
   const std::size_t leaving = left_++;
   FrameObjects result = leave(held_[leaving - held_.front().position]);
-  // carry_to() needs the last one in any case.
+  // carry_to() always needs the last frame.
   const std::size_t keep = rule_ == FillRule::kCausal ? std::max<std::size_t>(search, 1) : search;
   while (!held_.empty() && held_.front().position + keep <= leaving) held_.pop_front();
   return result;
@@ -167,7 +167,7 @@ std::optional<ObjectTracker::Sighting> ObjectTracker::sighting(const Track& trac
                                                                const Held& held,
                                                                int direction) const {
   const std::size_t here = held.position - held_.front().position;
-  // The last frame that was looked at tells of one that was not, however far fills may reach.
+  // The last frame that the network saw serves a frame that it did not see, at any distance.
   const int reach = held.looked_at ? config_.search_frames : std::max(config_.search_frames, 1);
   for (int distance = 1; distance <= reach; ++distance) {
     const auto step = static_cast<std::size_t>(distance);
@@ -219,8 +219,8 @@ PropagatedMask ObjectTracker::carried_mask(const Fill& fill, const Held& held) c
   return propagate_mask(view, area, fill.box, held.frame.depth, rule);
 }
 
-// Once may have been an error of the network; but nothing else tells of a frame that it has not
-// seen.
+// A single detection may be an error of the network. For a frame that the network did not see,
+// though, there is no other source.
 bool ObjectTracker::is_real(const Track& track, const Held& held) const {
   return track.sightings >= config_.min_sightings ||
          (!held.looked_at && track.seen_at + 1 == held.position);
@@ -234,7 +234,7 @@ FrameObjects ObjectTracker::leave(const Held& held) const {
     const std::optional<Fill> fill = fill_of(track, held);
     if (!fill || is_duplicate(track, *fill, held)) continue;
     const cv::Size image = held.frame.depth.mat.size();
-    if (pixels_of(fill->box, image).empty()) continue;  // it has left the image
+    if (pixels_of(fill->box, image).empty()) continue;  // the object has left the image
     const DetectedObject& nearest =
         fill->nearest.held->frame.detections.objects[fill->nearest.object];
     const PropagatedMask carried = carried_mask(*fill, held);

@@ -27,49 +27,59 @@ struct ObjectTrackerConfig {
   static void fields(Self& self, Visitor& visit) {
     visit("search_frames",
           self.search_frames,
-          FieldInfo{"how far a missed box is searched each way (Fan 2020: 3)", "frames", 0, 30});
+          FieldInfo{"number of frames searched each way for a missed box (3 in Fan 2020)",
+                    "frames",
+                    0,
+                    30});
     visit("min_iou",
           self.min_iou,
-          FieldInfo{"overlap of a box with where its track should be", "", 0.01, 1});
+          FieldInfo{"least overlap (IoU) of a box with its track's predicted box", "", 0.01, 1});
     visit("velocity_gain",
           self.velocity_gain,
-          FieldInfo{"share of a new box in the velocity of its track", "", 0, 1});
+          FieldInfo{"weight of the newest box in the velocity of its track", "", 0, 1});
     visit("duplicate_iou",
           self.duplicate_iou,
-          FieldInfo{"a box is not filled in where one of its class overlaps more", "", 0, 1});
-    visit("min_sightings",
-          self.min_sightings,
-          FieldInfo{"a track detected less often is not filled in (Fan 2020: 1)", "", 1, 10});
+          FieldInfo{"overlap (IoU) with a detection of the same class above which a missed box is "
+                    "not filled in",
+                    "",
+                    0,
+                    1});
+    visit(
+        "min_sightings",
+        self.min_sightings,
+        FieldInfo{
+            "number of detections that a track needs to be filled in (1 in Fan 2020)", "", 1, 10});
     visit("carry_depth_margin_m",
           self.carry_depth_margin_m,
-          FieldInfo{"how much nearer or farther a missed object may be", "m", 0, 10});
+          FieldInfo{"change of depth that a propagated mask allows its object", "m", 0, 10});
   }
 };
 
-/// How missed boxes are filled in.
+/// The frames from which missed boxes are filled in.
 enum class FillRule : std::uint8_t {
-  kBothWays,  ///< Fan 2020, section 4 with Eq. (10): from the frames before and after
-  kCausal,    ///< from the frames before alone, at the velocity the box had
+  kBothWays,  ///< frames before and after (Fan 2020, section III-C, Eq. (10))
+  kCausal,    ///< frames before only, with the velocity of the box
 };
 
-/// Gives objects an identity over frames, and fills in those that the network has missed.
+/// Tracks objects over frames and fills in objects that the network missed (Fan 2020, section
+/// III-C).
 ///
-/// Boxes of a class are the same object when they overlap where the velocity of its box puts it;
-/// best overlap first. The same input gives the same bits. With kBothWays a frame leaves
-/// `search_frames` frames after it came, with kCausal at once.
+/// A detection continues a track of its class when its box overlaps with the predicted box of the
+/// track; the best overlaps are taken first. The same input gives the same bits. With kBothWays a
+/// frame is returned `search_frames` frames after it was pushed, with kCausal at once.
 class ObjectTracker {
  public:
   ObjectTracker(const ObjectTrackerConfig& config, FillRule rule);
 
-  /// Takes the next frame, of a later stamp; gives the frame that leaves now, if any. The images
-  /// are kept as long as they may be needed, not copied.
+  /// Takes the next frame, with a later stamp, and returns the frame that is complete now, if any.
+  /// Images are kept as long as needed, without copying.
   [[nodiscard]] std::optional<FrameObjects> push(ObservedFrame frame);
 
-  /// The end: the frames that have not left, in order. Nothing may be pushed afterwards.
+  /// Ends the stream: returns the remaining frames in order. Nothing may be pushed afterwards.
   [[nodiscard]] std::vector<FrameObjects> flush();
 
-  /// What is known of a frame that no network has looked at, later than those pushed: all that they
-  /// show of late, each object filled in. With kCausal only.
+  /// The objects of a frame that the network did not see, later than all pushed frames: the recent
+  /// objects of those, each filled in. With kCausal only.
   [[nodiscard]] FrameObjects carry_to(FrameId frame,
                                       const Stamp& stamp,
                                       const DepthImage& depth) const;
@@ -78,9 +88,9 @@ class ObjectTracker {
   struct Track {
     TrackId id;
     std::string class_name;
-    PixelBox box;                   // when it was last detected
-    PixelBox velocity{0, 0, 0, 0};  // of each side, pixels a second
-    double seen_s = 0;              // the stamp of then
+    PixelBox box;                   // of its last detection
+    PixelBox velocity{0, 0, 0, 0};  // of each side, pixels per second
+    double seen_s = 0;              // stamp of its last detection
     std::size_t seen_at = 0;        // position of that frame in the stream
     int sightings = 0;
   };
@@ -94,7 +104,7 @@ class ObjectTracker {
   struct Sighting {
     const Held* held = nullptr;
     std::size_t object = 0;
-    int distance = 0;  // frames between
+    int distance = 0;  // number of frames in between
   };
   struct Fill {
     PixelBox box;

@@ -8,13 +8,14 @@
 
 namespace stillmap {
 
-/// Some pixels of an image: those of `area` that are not 0 in `pixels`, which is of its size.
+/// A set of pixels of an image: those of `area` that are not 0 in `pixels`, which has the size of
+/// `area`.
 struct PixelPatch {
   cv::Rect area;
   cv::Mat1b pixels;
 };
 
-/// An object as a frame has it.
+/// The pixels of an object in a frame.
 struct ObjectView {
   const DepthImage& depth;
   const ObjectMask& mask;

@@ -22,7 +22,7 @@ struct HeatMap {
   }
 };
 
-// Of equal neighbours the first, row by row, is the maximum.
+// Among equal neighbours the first, row by row, is the maximum.
 bool is_peak(const HeatMap& heat, int row, int column, int label) {
   const float value = heat.at(row, column, label);
   for (int r = std::max(row - 1, 0); r <= std::min(row + 1, heat.rows - 1); ++r) {

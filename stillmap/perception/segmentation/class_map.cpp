@@ -15,10 +15,11 @@ namespace {
 
 constexpr std::int64_t kMostClasses = 256;
 
-// One plane a class, as float images that share the tensor's values where these lie plane by plane.
+// One float image per class. They share the values of the tensor if these are stored plane by
+// plane.
 struct ClassPlanes {
   std::vector<cv::Mat1f> planes;
-  bool are_labels = false;  // a single plane that holds the classes themselves
+  bool are_labels = false;  // a single plane with class numbers
 };
 
 cv::Mat1f copy_plane(const TensorView& output,
@@ -58,11 +59,11 @@ ClassPlanes split_planes(const TensorView& output, bool channels_last) {
   return split;
 }
 
-// A plane a class that is 1 where the class is and 0 elsewhere, as far as the class occurs.
+// For each class that occurs a plane that is 1 at the class and 0 elsewhere.
 std::vector<cv::Mat1f> indicator_planes(const cv::Mat1f& labels) {
   std::vector<cv::Mat1f> planes(kMostClasses);
   for (auto label = labels.begin(); label != labels.end(); ++label) {
-    if (!(*label >= 0 && *label < kMostClasses)) continue;  // nothing known of this pixel
+    if (!(*label >= 0 && *label < kMostClasses)) continue;  // no class for this pixel
     cv::Mat1f& plane = planes[static_cast<std::size_t>(*label)];
     if (plane.empty()) plane = cv::Mat1f::zeros(labels.size());
     plane(label.pos()) = 1;
@@ -70,8 +71,8 @@ std::vector<cv::Mat1f> indicator_planes(const cv::Mat1f& labels) {
   return planes;
 }
 
-// The probabilities of all classes in place of their logits; what is in [0, 1] and sums to 1 in its
-// first pixel is taken for probabilities already.
+// Replaces logits by the probabilities of all classes. Values in [0, 1] that sum to 1 in the first
+// pixel count as probabilities already.
 void softmax(std::vector<cv::Mat1f>& planes) {
   double sum = 0;
   bool all_in_range = true;
@@ -95,7 +96,7 @@ void softmax(std::vector<cv::Mat1f>& planes) {
   }
 }
 
-// Which classes have the largest value in some pixel of their planes.
+// The classes that have the largest value in at least one pixel.
 std::vector<bool> winners(const std::vector<cv::Mat1f>& planes) {
   std::vector<bool> wins(planes.size(), false);
   const std::size_t pixels = planes.front().total();

@@ -20,7 +20,7 @@ constexpr std::array<std::string_view, 20> kVoc = {
 
 using Shapes = std::vector<TensorShape>;
 
-// The number of classes is known only after the kind, so that names are added last.
+// Names are added last, because the kind determines the number of classes.
 struct Found {
   NetworkExport network;
   std::int64_t classes = 0;
@@ -69,8 +69,8 @@ std::optional<Found> as_ssd(const Shapes& shapes) {
       {ExportKind::kSsd, {anchors[0], offsets, classes, maps[0]}, {}}, shapes[classes][2], true};
 }
 
-// Pairs of outputs with as many rows; the boxes have the columns that all of them share and that
-// are a multiple of 4, and the classes are the same number too.
+// Pairs of outputs with equal numbers of rows. All boxes have the same number of columns, a
+// multiple of 4, and all classes have the same number of columns, too.
 std::optional<Found> as_nanodet(const Shapes& shapes) {
   const std::vector<std::size_t> rows = outputs_of_rank(shapes, 3);
   if (shapes.size() < 4 || shapes.size() % 2 != 0 || rows.size() != shapes.size()) {
@@ -99,7 +99,7 @@ std::optional<Found> as_centernet(const Shapes& shapes) {
   return Found{{ExportKind::kCenterNet, {1 - sizes, sizes}, {}}, shapes[1 - sizes][3], false};
 }
 
-// The network's own names, else those of COCO or VOC by their number.
+// The names in the metadata of the network, else those of COCO or VOC, by their number.
 std::vector<std::string> class_names(const NetworkSignature& signature, const Found& found) {
   const std::size_t background = found.with_background ? 1 : 0;
   const auto count = static_cast<std::size_t>(std::max<std::int64_t>(found.classes, 0));

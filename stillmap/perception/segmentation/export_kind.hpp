@@ -13,9 +13,9 @@
 
 namespace stillmap {
 
-/// The kinds of networks that are understood, told apart by the shapes of their outputs.
+/// The supported kinds of networks. The shapes of the outputs distinguish them.
 enum class ExportKind {
-  kClassMap,     ///< one output: 1xCxHxW, or 1xHxW with the classes themselves
+  kClassMap,     ///< one output: 1xCxHxW, or 1xHxW with class numbers
   kYoloRows,     ///< YOLOv5 segmentation: 1xNxA and 1xPxHxW, N > A
   kYoloColumns,  ///< YOLOv8 or 11 segmentation: 1xAxN and 1xPxHxW, N > A
   kSsd,          ///< BlitzNet: anchors Nx4, offsets 1xNx4, classes 1xNxC, class map 1xCxHxW
@@ -25,18 +25,20 @@ enum class ExportKind {
 
 struct NetworkExport {
   ExportKind kind = ExportKind::kClassMap;
-  /// Which output is which. Class map: itself. YOLO: boxes, prototypes. SSD: anchors, offsets,
-  /// classes, class map. NanoDet: classes, boxes for each resolution. CenterNet: classes, sizes.
+  /// The numbers of the outputs, in this order. Class map: the map. YOLO: boxes, prototypes. SSD:
+  /// anchors, offsets, classes, class map. NanoDet: classes and boxes for each resolution.
+  /// CenterNet: classes, sizes.
   std::vector<std::size_t> outputs;
-  std::vector<std::string> names;  ///< of the classes; of the background first in class map and SSD
+  std::vector<std::string> names;  ///< class names; for class map and SSD the background's first
 };
 
-/// The shape of an input for images: 1x3xHxW or 1xHxWx3. What the network leaves open becomes the
-/// image's size, rounded up to a multiple of 32. Throws Error for a network with another input.
+/// The shape of the image input: 1x3xHxW or 1xHxWx3. Sizes that the network leaves open become
+/// those of the image, rounded up to a multiple of 32. Throws Error for a network with another
+/// input.
 [[nodiscard]] TensorShape image_input_shape(const NetworkSignature& signature, cv::Size image);
 
-/// What a network is, by the shapes that its outputs had in a run. Throws Error when that is
-/// nothing known, or when its classes have no names.
+/// Identifies a network by the shapes of its outputs in a run. Throws Error for an unknown kind,
+/// and for classes without names.
 [[nodiscard]] NetworkExport identify_export(const NetworkSignature& signature,
                                             const std::vector<TensorShape>& outputs);
 

@@ -11,23 +11,23 @@
 
 namespace stillmap {
 
-/// An object with a mask of its own, before it shares the image with others.
+/// An object with its own mask, before overlaps with other objects are resolved.
 struct FoundObject {
   std::string class_name;
   float score = 0;
   PixelBox box;     ///< pixels of the image
-  cv::Rect region;  ///< in the image: where the mask is
-  cv::Mat1b mask;   ///< as large as the region, not 0 where the object is; empty: no pixels
+  cv::Rect region;  ///< the area of the mask in the image
+  cv::Mat1b mask;   ///< of the size of the region, not 0 on the object; empty: no mask
 };
 
-/// Candidates in pixels of the image by the names of their classes, without masks. Those of a class
-/// beyond the names are dropped.
+/// Candidates (in pixels of the image) as objects without masks, with the names of their classes.
+/// Candidates whose class has no name are dropped.
 [[nodiscard]] std::vector<FoundObject> name_candidates(const std::vector<Candidate>& candidates,
                                                        const std::vector<std::string>& names);
 
-/// The objects of a frame in the order of their scores, the best first, numbered from 1; where
-/// masks overlap, the better object has the pixel. Boxes are clipped to the image and objects
-/// outside of it dropped; at most 255 are kept. Class names become COCO's.
+/// The detections of a frame by descending score, numbered from 1. Where masks overlap, the object
+/// of the higher score has the pixel. Boxes are clipped to the image; objects outside it are
+/// dropped; at most 255 are kept. Class names become those of COCO.
 [[nodiscard]] FrameDetections assemble_detections(const Stamp& stamp,
                                                   cv::Size image,
                                                   std::vector<FoundObject> objects);

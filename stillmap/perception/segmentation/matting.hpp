@@ -9,13 +9,13 @@
 
 namespace stillmap {
 
-/// The square that a person's box is cut out with: its middle is the box's, its side `scale` times
-/// the box's longer one.
+/// The square crop around a person's box: its centre is that of the box, its side `scale` times the
+/// longer side of the box.
 [[nodiscard]] PixelBox crop_square(const PixelBox& box, double scale);
 
-/// Gives a person the pixels of its box where a matting network sees one in the crop: `output`, HxW
-/// with ones before or after, at least `threshold`; `placement` is of the image on the network's
-/// input. Throws Error for an output of another shape.
+/// Gives a person the pixels of its box at which the output of a matting network is at least
+/// `threshold`. `output` is HxW, with ones before or after; `placement` is that of the image on the
+/// input of the network. Throws Error for an output of another shape.
 [[nodiscard]] FoundObject with_matting(FoundObject person,
                                        const TensorView& output,
                                        float threshold,

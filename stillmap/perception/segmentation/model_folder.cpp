@@ -9,9 +9,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Empty where it is not set: an empty variable counts as none.
+// The value of an environment variable; empty if it is not set.
 std::string environment(const char* name) {
-  // NOLINTNEXTLINE(concurrency-mt-unsafe): nothing in this program changes the environment
+  // NOLINTNEXTLINE(concurrency-mt-unsafe): this program never changes the environment
   const char* const value = std::getenv(name);
   return value == nullptr ? std::string() : std::string(value);
 }

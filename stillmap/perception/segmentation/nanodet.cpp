@@ -39,7 +39,7 @@ LevelSize level_size(const NanoDetLevel& level, cv::Size input) {
           static_cast<std::size_t>(boxes[1]) / 4};
 }
 
-// The mean bin number of a distribution given by logits.
+// The mean bin number of a distribution that is given by logits.
 double mean_bin(std::span<const float> logits) {
   const float largest = *std::ranges::max_element(logits);
   double sum = 0, weighted = 0;

@@ -13,15 +13,15 @@ struct NamedShape {
   TensorShape shape;  ///< -1 for a size that the network leaves open
 };
 
-/// What a network says of itself.
+/// The inputs, outputs and class names that a network declares.
 struct NetworkSignature {
   std::vector<NamedShape> inputs;
   std::vector<NamedShape> outputs;
-  std::string class_names;  ///< its metadata's entry `names`; empty when it has none
+  std::string class_names;  ///< the metadata entry `names`; empty if there is none
 };
 
-/// A network with one image as its input. run() may be called from several threads, and gives the
-/// same bits for the same input.
+/// A network with one image input. run() may be called from several threads and gives the same bits
+/// for the same input.
 class Network {
  public:
   Network() = default;
@@ -31,7 +31,8 @@ class Network {
 
   [[nodiscard]] virtual const NetworkSignature& signature() const = 0;
 
-  /// The outputs in the signature's order. Throws Error, naming the network, when it cannot be run.
+  /// The outputs, in the order of the signature. Throws Error, naming the network, when the run
+  /// fails.
   [[nodiscard]] virtual std::vector<Tensor> run(const Tensor& input) const = 0;
 };
 

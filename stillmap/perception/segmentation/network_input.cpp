@@ -10,15 +10,15 @@
 namespace stillmap {
 namespace {
 
-// Where along one axis a target pixel is sampled: between two source pixels.
+// The sample position of a target pixel along one axis: between two source pixels.
 struct Tap {
   int first = 0, second = 0;
-  float weight = 0;  // of the second
+  float weight = 0;  // of the second source pixel
   bool inside = false;
 };
 
-// Target pixel t has its middle at scale * (t + 0.5) + offset on the source. Within half a pixel
-// of the source's edge its outermost pixel counts alone.
+// The centre of target pixel t is at scale * (t + 0.5) + offset of the source. Within half a pixel
+// of the edge of the source only the outermost pixel counts.
 std::vector<Tap> make_taps(int begin, int count, double scale, double offset, int source) {
   std::vector<Tap> taps(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
@@ -36,7 +36,7 @@ float blend(float first, float second, float weight) {
   return first + weight * (second - first);
 }
 
-// One row of the input, three values a pixel, 0 to 255.
+// One row of the input: three values per pixel, 0 to 255.
 void sample_row(const cv::Mat3b& image,
                 const Tap& row,
                 const std::vector<Tap>& columns,

@@ -19,17 +19,18 @@
 namespace stillmap {
 namespace {
 
-constexpr double kMaxOverlap = 0.5;  // of two boxes of a class
+constexpr double kMaxOverlap = 0.5;  // IoU of two boxes of a class
 constexpr float kYoloScore = 0.25F;
 constexpr float kSsdScore = 0.4F;
 constexpr float kNanoDetScore = 0.35F;
 constexpr float kCenterNetScore = 0.28F;
 
-// A person that is missed does more harm than one too many; and what is none gets no mask.
+// A missed person does more harm than a false one, and a false one gets no mask.
 constexpr float kNanoDetPersonScore = 0.2F;
 
-// Of the crop to a person's box, of the box to what of a person can stick out of it, and the share
-// of that which a person's mask covers at least. Chosen on photographs and rendered offices.
+// Size of the crop relative to a person's box; size of the area in which the mask is kept, relative
+// to the box; least share of that area that the mask of a person covers. Chosen on photographs and
+// rendered offices.
 constexpr double kCropScale = 1.0;
 constexpr double kBoxScale = 1.1;
 constexpr double kLeastShare = 0.1;
@@ -43,12 +44,12 @@ bool channels_last(const TensorShape& input) {
   return input[1] != 3;
 }
 
-// How networks of a kind were trained to see.
+// The input format with which networks of a kind are trained.
 InputFormat format_of(ExportKind kind, bool last) {
   InputFormat format{.channels_last = last};
   constexpr float kWhole = 1.0F / 255.0F;  // values from 0 to 255
   switch (kind) {
-    case ExportKind::kClassMap:  // the mean and deviation of ImageNet's pictures
+    case ExportKind::kClassMap:  // mean and deviation of ImageNet
       format.mean = {0.485F, 0.456F, 0.406F};
       format.deviation = {0.229F, 0.224F, 0.225F};
       break;
@@ -82,7 +83,7 @@ std::vector<TensorShape> shapes_of(const std::vector<Tensor>& outputs) {
   return shapes;
 }
 
-// The stride at which a level's cells cover the input.
+// The stride at which the cells of a level cover the input.
 int stride_of(std::int64_t cells, cv::Size input) {
   const double area = static_cast<double>(input.area());
   return std::max(1, static_cast<int>(std::lround(std::sqrt(area / static_cast<double>(cells)))));

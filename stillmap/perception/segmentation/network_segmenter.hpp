@@ -12,15 +12,15 @@
 
 namespace stillmap {
 
-/// One network of a known kind, run on a whole image.
+/// A network of a supported kind that runs on whole images.
 class ImageNetwork {
  public:
-  /// Runs the network once on an empty image: shapes that it leaves open are known only then.
-  /// Throws Error when it is none of ExportKind.
+  /// Runs the network once on an empty image to learn the shapes of its outputs. Throws Error for a
+  /// network of no ExportKind.
   ImageNetwork(std::unique_ptr<Network> network, cv::Size image);
 
-  /// The objects that it finds, by the scores and overlaps that are usual for its kind; those of
-  /// NanoDet and CenterNet are boxes without masks.
+  /// The objects in an image, with the thresholds of score and overlap that are usual for the kind.
+  /// Those of NanoDet and CenterNet have no masks.
   [[nodiscard]] std::vector<FoundObject> find(const ColorImage& color) const;
 
  private:
@@ -37,7 +37,7 @@ class ImageNetwork {
   InputFormat format_;
 };
 
-/// One network that gives boxes and masks.
+/// A segmenter of one network.
 class NetworkSegmenter : public Segmenter {
  public:
   NetworkSegmenter(std::unique_ptr<Network> network, cv::Size image);
@@ -49,11 +49,12 @@ class NetworkSegmenter : public Segmenter {
   ImageNetwork network_;
 };
 
-/// A detector's boxes; those of people get a mask from a network that separates a person from what
-/// is around. A person of which that network sees next to nothing is dropped.
+/// A segmenter of two networks: a detector finds boxes, and a matting network finds the masks of
+/// people in them. A person of whom the matting network sees almost nothing is dropped.
 class PersonSegmenter : public Segmenter {
  public:
-  /// `matting` takes a square crop and gives one value a pixel, a person's from `threshold` up.
+  /// `matting` takes a square crop and gives one value per pixel; values of at least `threshold`
+  /// are a person's.
   PersonSegmenter(std::unique_ptr<Network> detector,
                   std::unique_ptr<Network> matting,
                   float threshold,

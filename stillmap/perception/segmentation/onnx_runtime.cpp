@@ -22,7 +22,7 @@ namespace stillmap {
 #if STILLMAP_WITH_ONNXRUNTIME
 namespace {
 
-// All that is used here was there in version 1.17, so that any later library will do.
+// This file uses version 1.17 of the interface, so that every later library works.
 constexpr std::uint32_t kApiVersion = 17;
 
 std::string one_line(std::string text) {
@@ -61,7 +61,7 @@ const OrtApi* load_api() {
   return api;
 }
 
-// Loaded once and never unloaded: its C++ interface keeps a pointer to it.
+// Loaded once and never unloaded, because the C++ interface keeps a pointer to it.
 const Ort::Env& environment() {
   static const Ort::Env env = [] {
     Ort::InitApi(load_api());
@@ -78,7 +78,7 @@ Ort::SessionOptions session_options(const OnnxOptions& options) {
   session.SetInterOpNumThreads(1);
   session.SetExecutionMode(ORT_SEQUENTIAL);
   session.SetGraphOptimizationLevel(ORT_ENABLE_ALL);
-  // Threads that wait must leave the cores to the rest of the program.
+  // Waiting threads must not spin: the rest of the program needs the cores.
   session.AddConfigEntry("session.intra_op.allow_spinning", "0");
   return session;
 }
@@ -175,8 +175,7 @@ class OnnxNetwork : public Network {
 
   [[nodiscard]] std::vector<Tensor> checked_run(const Tensor& input) const {
     const Ort::MemoryInfo memory = Ort::MemoryInfo::CreateCpu(OrtArenaAllocator, OrtMemTypeDefault);
-    // The interface takes what it only reads by a pointer to what may be written: so it gets a
-    // copy.
+    // The interface takes input by a non-const pointer, so it gets a copy.
     std::vector<float> values = input.values;
     const Ort::Value value = Ort::Value::CreateTensor<float>(
         memory, values.data(), values.size(), input.shape.data(), input.shape.size());

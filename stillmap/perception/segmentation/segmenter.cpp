@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What was found before.
+// Gives the detections of a folder.
 class FolderSegmenter : public Segmenter {
  public:
   FolderSegmenter(const fs::path& folder, cv::Size image)

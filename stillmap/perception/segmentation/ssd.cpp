@@ -9,7 +9,7 @@
 namespace stillmap {
 namespace {
 
-constexpr double kShift = 0.1;  // the variances with which such networks are trained
+constexpr double kShift = 0.1;  // variance of the offsets in the training of such networks
 constexpr double kGrowth = 0.2;
 
 struct Count {

@@ -10,11 +10,11 @@ namespace stillmap {
 
 using TensorShape = std::vector<std::int64_t>;
 
-/// What a network takes or gives: numbers in the order of the shape, the last index running
-/// fastest. The views of a Tensor live as long as it does.
+/// The values of an input or output of a network, in the order of the shape, with the last index
+/// running fastest. A view must not outlive its Tensor.
 struct TensorView {
   TensorShape shape;
-  std::span<const float> values;  ///< as many as the shape says
+  std::span<const float> values;  ///< element_count(shape) of them
 };
 
 struct Tensor {
@@ -24,14 +24,13 @@ struct Tensor {
   [[nodiscard]] TensorView view() const { return {shape, values}; }
 };
 
-/// The number of values that a shape says; -1 when it is negative, or more than 2^28.
+/// The number of values of a shape; -1 if it has a negative size or more than 2^28 values.
 [[nodiscard]] std::int64_t element_count(const TensorShape& shape);
 
-/// "1x3x416x416"
+/// The shape as text: "1x3x416x416".
 [[nodiscard]] std::string shape_text(const TensorShape& shape);
 
-/// The shape without the ones at its front, but not fewer than `rank` sizes: networks give a batch
-/// of one.
+/// The shape without leading ones, but with at least `rank` sizes. Networks give batches of one.
 [[nodiscard]] TensorShape without_batch(const TensorShape& shape, std::size_t rank);
 
 }  // namespace stillmap

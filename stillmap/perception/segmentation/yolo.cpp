@@ -8,7 +8,7 @@
 namespace stillmap {
 namespace {
 
-// The boxes and prototypes as what they mean.
+// Access to boxes and prototypes by meaning.
 struct Yolo {
   std::size_t boxes = 0, attributes = 0, classes = 0, prototypes = 0;
   std::size_t first_class = 0;
