@@ -9,6 +9,7 @@
 #include "stillmap/concurrency/prefetcher.hpp"
 #include "stillmap/concurrency/stage_probe.hpp"
 #include "stillmap/sensor/frame_stream.hpp"
+#include "stillmap/system/prepared_frame.hpp"
 #include "stillmap/system/system.hpp"
 #include "tooling/pipeline/object_source.hpp"
 

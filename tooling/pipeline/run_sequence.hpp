@@ -6,9 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "stillmap/concurrency/stage_probe.hpp"
 #include "stillmap/perception/segmentation/segmenter.hpp"
 #include "stillmap/sensor/clock.hpp"
 #include "stillmap/sensor/frame_stream.hpp"
+#include "stillmap/session/session.hpp"
+#include "stillmap/session/system_config.hpp"
 #include "stillmap/system/system.hpp"
 #include "tooling/pipeline/live_record.hpp"
 #include "tooling/report/run_report.hpp"

@@ -6,6 +6,9 @@
 
 namespace stillmap {
 
+/// Stands for a figure that is not known.
+inline constexpr const char* kDash = "\xE2\x80\x93";
+
 // Figures as people read them: with a fitting unit, about three digits, and a space between them at
 // which no line breaks. A value that is not finite is a dash.
 

@@ -8,7 +8,6 @@
 namespace stillmap {
 namespace {
 
-const char* const kDash = "\xE2\x80\x93";
 
 TEST(DisplayText, UnitsFitTheSize) {
   EXPECT_EQ(length_text(0.002134), "2.13\u00A0mm");
