@@ -14,8 +14,6 @@ std::string with_unit(double value, const char* unit) {
   return fmt::format("{:.{}f}\u00A0{}", value, decimals, unit);
 }
 
-const char* const kDash = "\xE2\x80\x93";
-
 }  // namespace
 
 std::string length_text(double metres) {

@@ -9,6 +9,8 @@ namespace stillmap {
 // Figures as people read them: with a fitting unit, about three digits, and a space between them at
 // which no line breaks. A value that is not finite is a dash.
 
+inline constexpr const char* kDash = "\xE2\x80\x93";
+
 [[nodiscard]] std::string length_text(double metres);          ///< "2.13 mm", "1.24 cm", "1.05 m"
 [[nodiscard]] std::string duration_text(double milliseconds);  ///< "0.51 ms", "12.3 ms", "1.25 s"
 [[nodiscard]] std::string memory_text(double megabytes);       ///< "412 MB", "1.35 GB"

@@ -14,8 +14,6 @@
 namespace stillmap {
 namespace {
 
-const char* const kDash = "\xE2\x80\x93";
-
 struct Tile {
   std::string name, value, remark;
 };

@@ -10,8 +10,6 @@
 namespace stillmap {
 namespace {
 
-const char* const kDash = "\xE2\x80\x93";
-
 std::string number(const std::optional<double>& value) {
   return value ? fmt::format("{:.3f}", *value) : kDash;
 }
