@@ -12,6 +12,7 @@
 #include "stillmap/io/atomic_file.hpp"
 #include "stillmap/io/image_io.hpp"
 #include "stillmap/sensor/camera_io.hpp"
+#include "tests/support/cameras.hpp"
 #include "tests/support/files.hpp"
 #include "tests/support/shared_data.hpp"
 
@@ -22,13 +23,8 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 CameraModel small_camera() {
-  CameraModel camera;
+  CameraModel camera = centered_camera(8, 6, 7.25);
   camera.name = "tiny \"one\"";
-  camera.width_px = 8;
-  camera.height_px = 6;
-  camera.fx = camera.fy = 7.25;
-  camera.cx = 3.5;
-  camera.cy = 2.5;
   return camera;
 }
 

@@ -7,17 +7,12 @@
 
 #include "simulation/render/ray_scene.hpp"
 #include "stillmap/geometry/camera.hpp"
+#include "tests/support/cameras.hpp"
 
 namespace stillmap {
 
 inline CameraModel small_camera(int width_px = 96, int height_px = 72) {
-  CameraModel camera;
-  camera.width_px = width_px;
-  camera.height_px = height_px;
-  camera.fx = camera.fy = 0.9 * width_px;
-  camera.cx = 0.5 * width_px - 0.5;
-  camera.cy = 0.5 * height_px - 0.5;
-  return camera;
+  return centered_camera(width_px, height_px, 0.9 * width_px);
 }
 
 /// A camera that looks along +x, the world's z axis being up in its image.

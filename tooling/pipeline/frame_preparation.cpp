@@ -9,13 +9,14 @@ namespace stillmap {
 FramePreparation::FramePreparation(FrameStream& stream,
                                    ObjectSource objects,
                                    const System& system,
-                                   const StageOptions& options)
+                                   bool ahead,
+                                   const StageProbe& probe)
     : stream_(stream),
       objects_(std::move(objects)),
       system_(system),
-      probe_(options.probe),
-      read_([this] { return read(); }, options.threaded ? kAhead : 0),
-      prepared_([this] { return prepare(); }, options.threaded ? kAhead : 0) {}
+      probe_(probe),
+      read_([this] { return read(); }, ahead ? kAhead : 0),
+      prepared_([this] { return prepare(); }, ahead ? kAhead : 0) {}
 
 std::optional<FramePreparation::TimedFrame> FramePreparation::read() {
   begin_work(probe_, Stage::kReading);

@@ -31,7 +31,8 @@ class FramePreparation {
   FramePreparation(FrameStream& stream,
                    ObjectSource objects,
                    const System& system,
-                   const StageOptions& options);
+                   bool ahead,
+                   const StageProbe& probe);
 
   /// One step for each frame and one for the end of the stream, then nothing. Throws what reading
   /// and segmentation throw.

@@ -26,7 +26,11 @@ void run_through(System& system, RunLog& log, FramePreparation& prepared) {
 
 SequenceRun run_sequence(FrameStream& stream, const SystemConfig& config, RunOptions options) {
   RunLog log(stream, config, options);
-  System system(config, stream.camera(), {options.threads, options.localize_only, options.probe});
+  System system(config,
+                stream.camera(),
+                {.threads = options.threads,
+                 .localize_only = options.localize_only,
+                 .probe = options.probe});
   if (options.start) system.load(std::move(*options.start));
   if (options.live) {
     LiveResult live = run_live({stream, config, options}, system, log);
@@ -38,7 +42,8 @@ SequenceRun run_sequence(FrameStream& stream, const SystemConfig& config, RunOpt
   FramePreparation prepared(stream,
                             ObjectSource(options.segmenter, config.dynamics.object_tracking()),
                             system,
-                            {options.threads > 1, options.probe});
+                            options.threads > 1,
+                            options.probe);
   run_through(system, log, prepared);
   return log.finish(system);
 }

@@ -14,7 +14,6 @@ std::string with_unit(double value, const char* unit) {
   return fmt::format("{:.{}f}\u00A0{}", value, decimals, unit);
 }
 
-
 }  // namespace
 
 std::string length_text(double metres) {

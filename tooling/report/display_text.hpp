@@ -6,11 +6,10 @@
 
 namespace stillmap {
 
-/// Stands for a figure that is not known.
-inline constexpr const char* kDash = "\xE2\x80\x93";
-
 // Figures as people read them: with a fitting unit, about three digits, and a space between them at
 // which no line breaks. A value that is not finite is a dash.
+
+inline constexpr const char* kDash = "\xE2\x80\x93";
 
 [[nodiscard]] std::string length_text(double metres);          ///< "2.13 mm", "1.24 cm", "1.05 m"
 [[nodiscard]] std::string duration_text(double milliseconds);  ///< "0.51 ms", "12.3 ms", "1.25 s"

@@ -8,6 +8,7 @@
 namespace stillmap {
 namespace {
 
+const char* const kEnDash = "\xE2\x80\x93";
 
 TEST(DisplayText, UnitsFitTheSize) {
   EXPECT_EQ(length_text(0.002134), "2.13\u00A0mm");
@@ -24,9 +25,9 @@ TEST(DisplayText, UnitsFitTheSize) {
 }
 
 TEST(DisplayText, WhatIsNotFiniteIsADash) {
-  EXPECT_EQ(length_text(std::numeric_limits<double>::quiet_NaN()), kDash);
-  EXPECT_EQ(duration_text(std::numeric_limits<double>::infinity()), kDash);
-  EXPECT_EQ(memory_text(std::numeric_limits<double>::quiet_NaN()), kDash);
+  EXPECT_EQ(length_text(std::numeric_limits<double>::quiet_NaN()), kEnDash);
+  EXPECT_EQ(duration_text(std::numeric_limits<double>::infinity()), kEnDash);
+  EXPECT_EQ(memory_text(std::numeric_limits<double>::quiet_NaN()), kEnDash);
 }
 
 TEST(DisplayText, CountsHaveGroupsOfThree) {
@@ -41,7 +42,7 @@ TEST(DisplayText, OnlyAllIsAHundredPercent) {
   EXPECT_EQ(share_text(9999, 10000), "99.9\u00A0%");
   EXPECT_EQ(share_text(1, 3), "33.3\u00A0%");
   EXPECT_EQ(share_text(0, 5), "0.0\u00A0%");
-  EXPECT_EQ(share_text(0, 0), kDash);
+  EXPECT_EQ(share_text(0, 0), kEnDash);
 }
 
 }  // namespace

@@ -14,7 +14,6 @@
 namespace stillmap {
 namespace {
 
-
 struct Tile {
   std::string name, value, remark;
 };

@@ -10,7 +10,6 @@
 namespace stillmap {
 namespace {
 
-
 std::string number(const std::optional<double>& value) {
   return value ? fmt::format("{:.3f}", *value) : kDash;
 }
