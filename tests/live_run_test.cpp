@@ -11,16 +11,27 @@
 namespace stillmap {
 namespace {
 
-// Each frame takes `frame_s` of the clock, while the network takes real time.
+// Each frame takes `frame_s` of the clock.
+class TimePasses : public Observer {
+ public:
+  TimePasses(TestClock& clock, double frame_s) : clock_(clock), frame_s_(frame_s) {}
+  void on_frame(const RgbdFrame&, const FrameResult&) override { clock_.pass_s(frame_s_); }
+
+ private:
+  TestClock& clock_;
+  double frame_s_;
+};
+
+// The network takes real time.
 SequenceRun run_live_wall(const Segmenter* segmenter, double frame_s) {
   TestClock clock;
   RunOptions options;
   options.segmenter = segmenter;
   options.live.emplace();
   options.live->clock = &clock;
-  options.on_progress = [&](std::size_t, std::size_t) { clock.pass_s(frame_s); };
+  TimePasses time_passes(clock, frame_s);
   TumFolder wall(wall_sequence());
-  return run_sequence(wall, {}, std::move(options));
+  return run_sequence(wall, {}, std::move(options), std::vector<Observer*>{&time_passes});
 }
 
 SequenceRun run_again(const Segmenter* segmenter, const LiveRecord& record, int threads) {

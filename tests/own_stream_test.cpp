@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
-#include "stillmap/io/image_io.hpp"
 #include "stillmap/sensor/frame_stream.hpp"
 #include "tooling/pipeline/run_sequence.hpp"
 
@@ -31,7 +30,6 @@ class SlidingCamera : public FrameStream {
     cv::resize(tiles, wall_, {}, 10, 10, cv::INTER_NEAREST);
   }
   [[nodiscard]] const CameraModel& camera() const override { return camera_; }
-  [[nodiscard]] std::optional<std::size_t> size() const override { return kFrames; }
   [[nodiscard]] std::optional<StreamedFrame> next() override {
     if (next_ == kFrames) return std::nullopt;
     const auto frame = std::make_shared<RgbdFrame>();

@@ -145,6 +145,20 @@ void add_grid_files(std::vector<FileContent>& files,
   files.push_back({arguments.grid, format_grid_yaml(grid, image.filename().string(), T_grid_map)});
 }
 
+void add_space_files(std::vector<FileContent>& files,
+                     const ExportArguments& arguments,
+                     FinishedRun& run,
+                     const Eigen::Isometry3d& T_grid_map) {
+  try {
+    if (!arguments.octomap.empty()) add_octree_file(files, arguments, run);
+    if (arguments.grid.empty()) return;
+    if (!arguments.upright) transform(run, T_grid_map);
+    add_grid_files(files, arguments, run, T_grid_map);
+  } catch (const ResolutionError& error) {
+    throw Error("--resolution {}: {}", arguments.space.resolution_m, error.what());
+  }
+}
+
 void run_export(const ExportArguments& arguments) {
   check_arguments(arguments);
   FinishedRun run = read_finished_run(
@@ -154,11 +168,7 @@ void run_export(const ExportArguments& arguments) {
   if (!arguments.grid.empty() || arguments.upright) T_grid_map = find_floor_frame(run);
   if (arguments.upright) transform(run, T_grid_map);
   add_point_files(files, arguments, run.map);
-  if (!arguments.octomap.empty()) add_octree_file(files, arguments, run);
-  if (!arguments.grid.empty()) {
-    if (!arguments.upright) transform(run, T_grid_map);
-    add_grid_files(files, arguments, run, T_grid_map);
-  }
+  add_space_files(files, arguments, run, T_grid_map);
   write_files_atomically(files);
   for (const FileContent& file : files) {
     print_output(fmt::format("{:>11} bytes  {}\n", file.bytes.size(), file.path.string()));

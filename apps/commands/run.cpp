@@ -9,7 +9,7 @@
 
 #include "apps/commands.hpp"
 #include "apps/option_value.hpp"
-#include "apps/progress_bar.hpp"
+#include "apps/run_progress.hpp"
 #include "apps/steady_clock.hpp"
 #include "apps/version.hpp"
 #include "stillmap/config/config_io.hpp"
@@ -63,9 +63,9 @@ SystemConfig make_config(const RunArguments& arguments) {
   SystemConfig config;
   const std::vector<FieldRef> fields = list_fields(config);
   if (!arguments.config_file.empty()) load_yaml(fields, arguments.config_file);
-  for (const std::string& setting : arguments.settings) set_value(fields, setting);
+  for (const std::string& setting : arguments.settings) set_value(fields, setting, "--set");
   if (!arguments.dynamics.empty())
-    set_value(fields, "dynamics.mode=" + checked_mode(arguments.dynamics));
+    set_value(fields, "dynamics.mode=" + checked_mode(arguments.dynamics), "--dynamics");
   config.check();
   return config;
 }
@@ -73,6 +73,31 @@ SystemConfig make_config(const RunArguments& arguments) {
 std::optional<CameraModel> chosen_camera(const std::string& name) {
   if (name.empty()) return std::nullopt;
   return camera_by_name(name);
+}
+
+TumSequence open_sequence(const RunArguments& arguments) {
+  try {
+    return TumSequence::open(arguments.sequence, {.camera = chosen_camera(arguments.camera)});
+  } catch (const UnknownCamera& error) {
+    throw Error("{} (--camera NAME or FILE names it)", error.what());
+  }
+}
+
+std::unique_ptr<Segmenter> open_segmenter(const RunArguments& arguments,
+                                          const CameraModel& camera) {
+  if (arguments.segmenter == "none") return nullptr;
+  return option_value("--segmenter", arguments.segmenter, [&](const std::string& text) {
+    return make_segmenter(
+        text, {camera.width_px, camera.height_px}, {.threads = arguments.live ? 1 : 2});
+  });
+}
+
+// The results' folder; that of the option, where it cannot be used.
+void prepare_out(const RunArguments& arguments) {
+  (void)option_value("--out", arguments.out, [](const std::string& folder) {
+    prepare_run_folder(folder);
+    return true;
+  });
 }
 
 std::optional<Trajectory> read_groundtruth(const RunArguments& arguments,
@@ -208,8 +233,7 @@ int run(const RunArguments& arguments) {
     throw Error(
         "--localize-only needs a map to find the camera in: name a map.stillmap with --load");
   }
-  const TumSequence sequence =
-      TumSequence::open(arguments.sequence, {.camera = chosen_camera(arguments.camera)});
+  const TumSequence sequence = open_sequence(arguments);
   std::optional<Trajectory> groundtruth = read_groundtruth(arguments, sequence);
   if (arguments.poses == "truth" && !groundtruth) {
     throw Error("--poses truth: {} has no groundtruth.txt; name one with --groundtruth",
@@ -217,27 +241,20 @@ int run(const RunArguments& arguments) {
   }
   const std::optional<SequenceTruth> truth = read_sequence_truth(arguments.sequence);
   TumFolder frames(sequence, selected_frames(arguments));
-  const CameraModel& camera = frames.camera();
-  const std::unique_ptr<Segmenter> segmenter =
-      arguments.segmenter == "none" ? nullptr
-                                    : make_segmenter(arguments.segmenter,
-                                                     {camera.width_px, camera.height_px},
-                                                     {.threads = arguments.live ? 1 : 2});
+  const std::unique_ptr<Segmenter> segmenter = open_segmenter(arguments, frames.camera());
   RunOptions options;
   if (!arguments.load.empty()) options.start = read_session(arguments.load);
   options.localize_only = arguments.localize_only;
-  prepare_run_folder(arguments.out);
+  prepare_out(arguments);
   options.segmenter = segmenter.get();
   options.threads = arguments.threads;
   options.live = live_options(arguments);
   SteadyClock clock;
   if (options.live) options.live->clock = &clock;
   if (truth || arguments.poses == "truth") options.groundtruth = groundtruth;
-  ProgressBar progress("frames");
-  options.on_progress = [&](std::size_t done, std::size_t total) { progress.show(done, total); };
-  options.on_warning = [&](const std::string& warning) { progress.warn(warning); };
-  SequenceRun run = run_sequence(frames, config, std::move(options));
-  progress.finish();
+  RunProgress progress(frames.size());
+  SequenceRun run =
+      run_sequence(frames, config, std::move(options), std::vector<Observer*>{&progress});
 
   RunReport& report = run.report;
   report.version = kVersion;

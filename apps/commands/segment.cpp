@@ -6,12 +6,14 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include "apps/commands.hpp"
+#include "apps/option_value.hpp"
 #include "apps/progress_bar.hpp"
 #include "stillmap/concurrency/parallel.hpp"
 #include "stillmap/core/error.hpp"
@@ -32,11 +34,8 @@ struct SegmentArguments {
   std::size_t threads = 2;
 };
 
-// The detections of a frame, or the reason why its image could not be read.
-struct SegmentedFrame {
-  FrameDetections detections;
-  std::optional<std::string> damage;
-};
+// The detections of a frame, and the reason why its image could not be read, if it could not.
+using Found = std::pair<FrameDetections, std::optional<std::string>>;
 
 bool is_in(const fs::path& path, const fs::path& folder) {
   const auto [rest, unused] = std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
@@ -81,10 +80,8 @@ cv::Size image_size(const std::vector<SequenceEntry>& entries) {
   throw Error("a sequence without images");
 }
 
-SegmentedFrame segment_frame(const Segmenter& segmenter,
-                             const SequenceEntry& entry,
-                             cv::Size size) {
-  SegmentedFrame frame;
+Found segment_frame(const Segmenter& segmenter, const SequenceEntry& entry, cv::Size size) {
+  Found frame;
   try {
     const ColorImage color = read_color(entry.color_file);
     if (color.mat.size() != size) {
@@ -95,11 +92,11 @@ SegmentedFrame segment_frame(const Segmenter& segmenter,
                   size.width,
                   size.height);
     }
-    frame.detections = segmenter.segment(color, entry.stamp);
+    frame.first = segmenter.segment(color, entry.stamp);
   } catch (const DamagedImage& damage) {
-    frame.damage = damage.what();
+    frame.second = damage.what();
   }
-  frame.detections.stamp = entry.stamp;
+  frame.first.stamp = entry.stamp;
   return frame;
 }
 
@@ -109,7 +106,9 @@ void segment(const SegmentArguments& arguments) {
   const cv::Size size = image_size(entries);
   // Frames are processed in parallel, each by one thread.
   const std::unique_ptr<Segmenter> segmenter =
-      make_segmenter(arguments.segmenter, size, {.threads = 1});
+      option_value("--segmenter", arguments.segmenter, [&](const std::string& text) {
+        return make_segmenter(text, size, {.threads = 1});
+      });
   DetectionsWriter writer(arguments.out, size);
 
   std::size_t objects = 0;
@@ -119,10 +118,10 @@ void segment(const SegmentArguments& arguments) {
       entries.size(),
       arguments.threads,
       [&](std::size_t i) { return segment_frame(*segmenter, entries[i], size); },
-      [&](std::size_t i, const SegmentedFrame& frame) {
-        if (frame.damage) progress.warn(*frame.damage + "; taken for a frame without objects");
-        writer.add(frame.detections);
-        objects += frame.detections.objects.size();
+      [&](std::size_t i, const Found& frame) {
+        if (frame.second) progress.warn(*frame.second + "; taken for a frame without objects");
+        writer.add(frame.first);
+        objects += frame.first.objects.size();
         progress.show(i + 1, entries.size());
       });
   writer.finish();

@@ -71,12 +71,14 @@ std::vector<YamlLine> yaml_lines(std::span<const FieldRef> fields) {
 
 }  // namespace
 
-void set_value(std::span<const FieldRef> fields, std::string_view assignment) {
+void set_value(std::span<const FieldRef> fields,
+               std::string_view assignment,
+               std::string_view where) {
   const std::size_t equals = assignment.find('=');
   if (equals == std::string_view::npos) {
-    throw Error("--set {}: expected key=value", printable(assignment));
+    throw Error("{} {}: expected key=value", where, printable(assignment));
   }
-  set_value(fields, assignment.substr(0, equals), assignment.substr(equals + 1), "--set");
+  set_value(fields, assignment.substr(0, equals), assignment.substr(equals + 1), where);
 }
 
 void set_value(std::span<const FieldRef> fields,

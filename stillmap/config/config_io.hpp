@@ -64,8 +64,11 @@ void load_yaml_text(std::span<const FieldRef> fields,
                     std::string_view text,
                     const std::string& name);
 
-/// Sets one value from a text "key=value", as strictly as load_yaml.
-void set_value(std::span<const FieldRef> fields, std::string_view assignment);
+/// Sets one value from a text "key=value", as strictly as load_yaml. `where` says in messages where
+/// the text stood.
+void set_value(std::span<const FieldRef> fields,
+               std::string_view assignment,
+               std::string_view where = "setting");
 
 /// Sets one value from its text. `where` begins the messages.
 void set_value(std::span<const FieldRef> fields,

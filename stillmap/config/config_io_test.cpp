@@ -28,7 +28,7 @@ using testing::HasSubstr;
 std::string set_error(const std::string& assignment) {
   Config config;
   try {
-    set_value(list_fields(config), assignment);
+    set_value(list_fields(config), assignment, "--set");
   } catch (const Error& error) {
     return error.what();
   }

@@ -14,8 +14,8 @@ namespace stillmap {
 /// The first field of the group `group`, or null when there is no such group.
 [[nodiscard]] const FieldRef* find_group(std::span<const FieldRef> fields, std::string_view group);
 
-/// Throws the Error for an unknown key. Its text begins with `where` ("room.yaml:7", "--set") and
-/// hints at the nearest key of the key's group, or of all keys when there is no such group.
+/// Throws the Error for an unknown key. Its text begins with `where` ("room.yaml:7") and hints at
+/// the nearest key of the key's group, or of all keys when there is no such group.
 [[noreturn]] void throw_unknown_key(std::span<const FieldRef> fields,
                                     std::string_view key,
                                     std::string_view where);

@@ -25,8 +25,8 @@ enum class Quoting { kPlain, kQuoted };
 /// m".
 [[nodiscard]] std::string expectation(const FieldRef& field);
 
-/// Sets the field. Throws Error, beginning with `where` ("room.yaml:7", "--set"), for a text that
-/// is not a value of the field's type and range.
+/// Sets the field. Throws Error, beginning with `where` ("room.yaml:7"), for a text that is not a
+/// value of the field's type and range.
 void assign(const FieldRef& field, std::string_view text, Quoting quoting, std::string_view where);
 
 /// A text from outside, shortened and without control characters, fit for one line of a message.

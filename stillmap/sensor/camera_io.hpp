@@ -14,7 +14,7 @@ namespace stillmap {
 /// sizes, focal lengths or a depth factor that are not positive (sizes: at most 8192).
 [[nodiscard]] CameraModel read_camera_yaml(const std::filesystem::path& path);
 
-/// The camera that `--camera` means: a file where the text has a '/' or ends in ".yaml", else one
+/// The camera of that name: a file where the text has a '/' or ends in ".yaml", else one
 /// known by name. Throws Error as read_camera_yaml and builtin_camera do.
 [[nodiscard]] CameraModel camera_by_name(const std::string& name_or_file);
 

@@ -64,9 +64,8 @@ CameraModel find_camera(const fs::path& folder,
   if (const std::optional<CameraModel> camera = camera_of_name(name)) return *camera;
   const fs::path truth = folder / "truth" / "objects.json";
   if (path_exists(truth)) return read_truth_camera(truth);
-  throw Error(
-      "{}: which camera took it is unknown: give --camera NAME or FILE, or put a camera.yaml there",
-      folder.string());
+  throw UnknownCamera("{}: which camera took it is unknown: name it, or put a camera.yaml there",
+                      folder.string());
 }
 
 void check_size(const cv::Mat& image, const CameraModel& camera, const fs::path& file) {

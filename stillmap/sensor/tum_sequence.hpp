@@ -7,11 +7,18 @@
 #include <string>
 #include <vector>
 
+#include "stillmap/core/error.hpp"
 #include "stillmap/core/ids.hpp"
 #include "stillmap/core/rgbd_frame.hpp"
 #include "stillmap/geometry/camera.hpp"
 
 namespace stillmap {
+
+/// Nothing says which camera took a sequence.
+class UnknownCamera : public Error {
+ public:
+  using Error::Error;
+};
 
 struct SequenceOptions {
   std::optional<CameraModel> camera;  ///< instead of the one that the sequence says or suggests
@@ -35,7 +42,7 @@ class TumSequence {
   /// else the one that the folder's name tells (freiburg1, fr1, freiburg2, fr2, freiburg3, fr3,
   /// bonn as words of it), else that in truth/objects.json. Throws Error, with file and line, for
   /// a missing folder or list, an empty list, stamps that do not increase, a file outside the
-  /// folder, no pair at all, no known camera.
+  /// folder, no pair at all; UnknownCamera for no known camera.
   [[nodiscard]] static TumSequence open(const std::filesystem::path& folder,
                                         const SequenceOptions& options = {});
 

@@ -139,7 +139,7 @@ TEST_F(TumSequenceTest, ChoosesTheCamera) {
   fs::remove(folder_ / "camera.yaml");
   EXPECT_EQ(TumSequence::open(folder_).camera().fx, 9.0);
   fs::remove_all(folder_ / "truth");
-  EXPECT_THAT(open_error(), HasSubstr("--camera"));
+  EXPECT_THAT(open_error(), HasSubstr("put a camera.yaml there"));
   fs::create_directories(folder_ / "truth");
   write("truth/objects.json", R"({"camera":{"width":8,"height":6,"fx":9,"fy":9,"cx":4,"cy":3}})");
   for (const auto& [name, camera] : {std::pair("rgbd_dataset_freiburg1_xyz", "tum_fr1"),

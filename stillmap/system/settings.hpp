@@ -10,8 +10,8 @@ namespace stillmap {
 
 struct SystemConfig;
 
-/// The settings of a System, by their keys. All have defaults; `stillmap config --all` and
-/// docs/settings.md list them with unit, range and meaning.
+/// The settings of a System, by their keys. All have defaults; docs/settings.md lists them
+/// with unit, range and meaning.
 ///
 ///   Settings settings;
 ///   settings.set("dynamics.mode", "paper");

@@ -26,8 +26,8 @@ struct VoxelEvidence {
 void check_reach(const Eigen::Vector3d& p, double resolution_m) {
   const double farthest = p.cwiseAbs().maxCoeff();
   if (farthest < kMaxVoxelsFromOrigin * resolution_m) return;
-  throw Error(
-      "{:.6g} m from the origin is too far for voxels of {} m; choose a larger --resolution",
+  throw ResolutionError(
+      "{:.6g} m from the origin is too far for voxels of {} m; choose larger ones",
       farthest,
       resolution_m);
 }
@@ -86,8 +86,8 @@ class SpaceObserver {
 
   void check_size() const {
     if (evidence_.block_count() <= kMaxBlocks) return;
-    throw Error("the map is too large for voxels of {} m; choose a larger --resolution",
-                options_.resolution_m);
+    throw ResolutionError("the map is too large for voxels of {} m; choose larger ones",
+                          options_.resolution_m);
   }
 
   std::vector<Eigen::Vector3f> points_;

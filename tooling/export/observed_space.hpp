@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include "stillmap/core/error.hpp"
 #include "stillmap/geometry/camera.hpp"
 
 namespace stillmap {
@@ -30,13 +31,18 @@ struct ObservedSpace {
   std::vector<SpaceVoxel> voxels;  ///< without repetition; the same order for the same input
 };
 
+/// The voxels or cells asked for are too small for the map.
+class ResolutionError : public Error {
+ public:
+  using Error::Error;
+};
+
 /// Occupied and free space from a map and the poses of its cameras. A voxel with points is
 /// occupied, even if rays pass it. A voxel without points is free if the ray from a camera to a
 /// visible point (see visible_points) passes it before the first occupied voxel.
 ///
-/// Surfaces that no depth image showed (glass, black screens) hide nothing. Throws Error, naming
-/// --resolution, for points over 2^15 voxels from the origin, and when more than 2^27 voxels are
-/// touched.
+/// Surfaces that no depth image showed (glass, black screens) hide nothing. Throws ResolutionError
+/// for points over 2^15 voxels from the origin, and when more than 2^27 voxels are touched.
 [[nodiscard]] ObservedSpace observe_space(std::span<const Eigen::Vector3f> p_world,
                                           std::span<const Eigen::Isometry3d> T_world_camera,
                                           const CameraModel& camera,

@@ -97,7 +97,7 @@ TEST(ObserveSpace, NothingBehindAClosedWallIsFreeAtAnyAngle) {
 TEST(ObserveSpace, RefusesPointsTooFarOut) {
   const std::vector<Eigen::Vector3f> far = {{2000, 0, 0}};
   EXPECT_THAT(error_of([&] { (void)observe_space(far, kTwice, test_camera(), {}); }),
-              HasSubstr("--resolution"));
+              HasSubstr("choose larger ones"));
 }
 
 }  // namespace

@@ -36,8 +36,8 @@ Extent extent_of(const ObservedSpace& space) {
   }
   const Eigen::Array2i size = high - low + 1;
   if (static_cast<double>(size.x()) * static_cast<double>(size.y()) > kMaxCells) {
-    throw Error("the map is too wide for a grid of {} m; choose a larger --resolution",
-                space.resolution_m);
+    throw ResolutionError("the map is too wide for cells of {} m; choose larger ones",
+                          space.resolution_m);
   }
   return {low, size};
 }

@@ -41,8 +41,8 @@ struct HeightBand {
 /// A cell is occupied if its column has at least two thinned points in the band (one alone may be
 /// noise). Else it is free if floor was seen there, or free space in at least a quarter of the
 /// band, unless the lowest third of the band was in view but hidden. Else it is unknown. The grid
-/// covers the known cells; without any it has size 0. Throws Error, naming --resolution, as
-/// observe_space does, and beyond 2^25 cells.
+/// covers the known cells; without any it has size 0. Throws ResolutionError as observe_space does,
+/// and beyond 2^25 cells.
 [[nodiscard]] OccupancyGrid make_occupancy_grid(std::span<const Eigen::Vector3f> p_grid,
                                                 std::span<const Eigen::Isometry3d> T_grid_camera,
                                                 const CameraModel& camera,

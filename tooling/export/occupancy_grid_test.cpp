@@ -84,7 +84,7 @@ TEST(MakeOccupancyGrid, OfNothingIsEmptyAndOfTooMuchAnError) {
   EXPECT_EQ(make_occupancy_grid({}, {}, room.camera, {}, {}).cells.size(), 0U);
   const std::vector<Eigen::Vector3f> wide = {{-900, -900, 1}, {900, 900, 1}};
   EXPECT_THAT(error_of([&] { (void)make_occupancy_grid(wide, {}, room.camera, {}, {}); }),
-              HasSubstr("--resolution"));
+              HasSubstr("choose larger ones"));
 }
 
 OccupancyGrid three_by_two() {

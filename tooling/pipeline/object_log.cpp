@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include <nlohmann/json.hpp>
-
-#include "stillmap/core/error.hpp"
 
 namespace stillmap {
 namespace {
@@ -30,21 +29,33 @@ Json track_json(const std::optional<TrackId>& track) {
   return track ? Json(track->value) : Json();
 }
 
-Json object_json(const LoggedObject& object, const Eigen::Isometry3d* T_world_camera) {
+/// The frame's final pose, and the inverse of the pose that it had when it was processed.
+struct Move {
+  Eigen::Isometry3d T_world_camera;
+  Eigen::Isometry3d T_camera_then;
+};
+
+/// `to_final`: null for a frame without a final pose.
+Json object_json(const ObjectState& state, const Move* to_final) {
+  const Motion& motion = state.motion;
   std::optional<Eigen::Vector3d> p_world, v_world;
-  if (T_world_camera != nullptr) {
-    if (object.p_camera) p_world = *T_world_camera * *object.p_camera;
-    if (object.v_camera_m_s) v_world = T_world_camera->linear() * *object.v_camera_m_s;
+  if (to_final != nullptr) {
+    if (motion.p_world) {
+      p_world = to_final->T_world_camera * (to_final->T_camera_then * *motion.p_world);
+    }
+    if (motion.state != MotionState::kUnknown) {
+      v_world = to_final->T_world_camera.linear() *
+                (to_final->T_camera_then.linear() * motion.velocity_m_s);
+    }
   }
-  const ObjectState& state = object.state;
   const PixelBox& box = state.box;
   return {{"track", state.track.value},
           {"class", state.class_name},
           {"category", category_name(state.category)},
           {"state", state.dynamic ? "dynamic" : "static"},
           {"reason", reason_name(state.reason)},
-          {"motion", motion_name(state.motion.state)},
-          {"by", track_json(state.motion.by)},
+          {"motion", motion_name(motion.state)},
+          {"by", track_json(motion.by)},
           {"person", track_json(state.person)},
           {"box", {rounded(box.x0, 1), rounded(box.y0, 1), rounded(box.x1, 1), rounded(box.y1, 1)}},
           {"filled", state.filled},
@@ -66,46 +77,34 @@ struct TrackCounts {
   ObjectSummary summary;
 };
 
-void count(TrackCounts& counts, const LoggedObject& object) {
-  ++counts.classes[object.state.class_name];
-  ++counts.reasons[object.state.reason];
-  ++counts.motions[object.state.motion.state];
+void count(TrackCounts& counts, const ObjectState& state) {
+  ++counts.classes[state.class_name];
+  ++counts.reasons[state.reason];
+  ++counts.motions[state.motion.state];
   ObjectSummary& summary = counts.summary;
-  summary.track = object.state.track.value;
-  summary.category = category_name(object.state.category);
+  summary.track = state.track.value;
+  summary.category = category_name(state.category);
   ++summary.frames;
-  summary.filled += object.state.filled ? 1 : 0;
-  summary.dynamic += object.state.dynamic ? 1 : 0;
+  summary.filled += state.filled ? 1 : 0;
+  summary.dynamic += state.dynamic ? 1 : 0;
 }
 
 }  // namespace
 
-LoggedFrame log_frame(const FrameResult& result) {
-  const Eigen::Isometry3d T_camera_world = result.T_world_camera.inverse();
-  LoggedFrame frame{result.stamp, {}};
-  for (const ObjectState& state : result.objects) {
-    LoggedObject object{state, {}, {}};
-    const Motion& motion = state.motion;
-    if (motion.p_world) object.p_camera = T_camera_world * *motion.p_world;
-    if (motion.state != MotionState::kUnknown) {
-      object.v_camera_m_s = T_camera_world.linear() * motion.velocity_m_s;
-    }
-    frame.objects.push_back(std::move(object));
-  }
-  return frame;
-}
-
 std::string objects_jsonl(std::span<const LoggedFrame> frames, const Trajectory& final_poses) {
   std::string text;
   auto pose = final_poses.begin();
-  for (const LoggedFrame& frame : frames) {
-    while (pose != final_poses.end() && pose->stamp.seconds < frame.stamp.seconds) ++pose;
-    const bool posed = pose != final_poses.end() && pose->stamp.text == frame.stamp.text;
-    Json objects = Json::array();
-    for (const LoggedObject& object : frame.objects) {
-      objects.push_back(object_json(object, posed ? &pose->T_world_camera : nullptr));
+  for (const auto& [then, states] : frames) {
+    while (pose != final_poses.end() && pose->stamp.seconds < then.stamp.seconds) ++pose;
+    std::optional<Move> to_final;
+    if (pose != final_poses.end() && pose->stamp.text == then.stamp.text) {
+      to_final = Move{pose->T_world_camera, then.T_world_camera.inverse()};
     }
-    const Json line = {{"stamp", frame.stamp.text}, {"objects", std::move(objects)}};
+    Json objects = Json::array();
+    for (const ObjectState& state : states) {
+      objects.push_back(object_json(state, to_final ? &*to_final : nullptr));
+    }
+    const Json line = {{"stamp", then.stamp.text}, {"objects", std::move(objects)}};
     text += line.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
   }
   return text;
@@ -113,8 +112,8 @@ std::string objects_jsonl(std::span<const LoggedFrame> frames, const Trajectory&
 
 std::vector<ObjectSummary> summarize_objects(std::span<const LoggedFrame> frames) {
   std::map<TrackId, TrackCounts> tracks;
-  for (const LoggedFrame& frame : frames) {
-    for (const LoggedObject& object : frame.objects) count(tracks[object.state.track], object);
+  for (const auto& [pose, states] : frames) {
+    for (const ObjectState& state : states) count(tracks[state.track], state);
   }
   std::vector<ObjectSummary> summaries;
   for (auto& [track, counts] : tracks) {

@@ -1,34 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "stillmap/core/trajectory.hpp"
+#include "stillmap/perception/objects/object_state.hpp"
+#include "stillmap/system/observer.hpp"
 #include "stillmap/system/results.hpp"
 #include "tooling/report/run_report.hpp"
 
 namespace stillmap {
 
-/// What a run keeps of an object in a frame. Place and velocity are in the camera's axes, so that a
-/// later correction of the frame's pose moves them too.
-struct LoggedObject {
-  ObjectState state;
-  std::optional<Eigen::Vector3d> p_camera;      ///< middle of what is seen of it
-  std::optional<Eigen::Vector3d> v_camera_m_s;  ///< its own velocity; none where not known
-};
-
-struct LoggedFrame {
-  Stamp stamp;
-  std::vector<LoggedObject> objects;  ///< in the order of the frame's objects
-};
-
-/// What is to be kept of a frame that dynamics was run on.
-[[nodiscard]] LoggedFrame log_frame(const FrameResult& result);
+/// The objects of a frame, and the pose that it had when it was processed. Places and velocities of
+/// the objects are under that pose, so that a later correction of it moves them too.
+using LoggedFrame = std::pair<StampedPose, std::vector<ObjectState>>;
+[[nodiscard]] inline LoggedFrame log_frame(const FrameResult& result) {
+  return {{result.stamp, result.T_world_camera}, result.objects};
+}
 
 /// The lines of objects.jsonl, one a frame, in order; each is a JSON object:
 /// `{"stamp","objects":[{"track","class","category","state","reason","motion","by","person","box",
@@ -44,5 +35,22 @@ struct LoggedFrame {
 
 /// What the frames say of each object on the whole, in the order of the tracks' numbers.
 [[nodiscard]] std::vector<ObjectSummary> summarize_objects(std::span<const LoggedFrame> frames);
+
+/// Keeps the objects of all frames that dynamics was run on.
+class ObjectLog : public Observer {
+ public:
+  void on_frame(const RgbdFrame& /*frame*/, const FrameResult& result) override {
+    frames_.push_back(log_frame(result));
+  }
+
+  /// See objects_jsonl().
+  [[nodiscard]] std::string jsonl(const Trajectory& final_poses) const {
+    return objects_jsonl(frames_, final_poses);
+  }
+  [[nodiscard]] std::vector<ObjectSummary> summaries() const { return summarize_objects(frames_); }
+
+ private:
+  std::vector<LoggedFrame> frames_;
+};
 
 }  // namespace stillmap

@@ -3,6 +3,9 @@
 
 #include <numbers>
 #include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -13,43 +16,34 @@ namespace {
 using nlohmann::json;
 
 // A person, and a chair that it pushes, as a camera sees them that looks along the world's x.
-FrameResult pushed_chair() {
+FrameResult pushed_chair(Stamp stamp) {
   FrameResult result;
-  result.tracked.T_world_camera.linear() =
+  result.stamp = std::move(stamp);
+  result.T_world_camera.linear() =
       Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitY()).toRotationMatrix();
-  result.tracked.T_world_camera.translation() << 1, 2, 3;
-  FrameDynamics& dynamics = result.dynamics;
-  dynamics.objects.objects.resize(2);
-  dynamics.judged.states.resize(2);
-  dynamics.motions.resize(2);
-  dynamics.objects.objects[0].detection.class_name = "person";
-  dynamics.objects.objects[1].detection.class_name = "chair \"\xff";
-  ObjectState& person = dynamics.judged.states[0];
-  person = {.track = TrackId(4),
-            .category = Category::kDynamic,
-            .dynamic = true,
-            .reason = StateReason::kDynamicClass,
-            .person = {},
-            .box = {10, 20.26, 30, 40},
-            .filled = true,
-            .depths = {},
-            .median_depth_m = 0};
-  ObjectState& chair = dynamics.judged.states[1];
-  chair = {.track = TrackId(7),
-           .category = Category::kPotentiallyDynamic,
-           .dynamic = true,
-           .reason = StateReason::kTouching,
-           .person = TrackId(4),
-           .box = {1, 2, 3, 4},
-           .filled = false,
-           .depths = {},
-           .median_depth_m = 0};
-  dynamics.motions[1] = {.track = TrackId(7),
-                         .motion = Motion::kMovedBySomeone,
-                         .p_world = Eigen::Vector3d(3, 2, 3.00004),
-                         .velocity_m_s = {0.5, 0, -0.00001},
-                         .velocity_error_m_s = 0.1,
-                         .by = TrackId(4)};
+  result.T_world_camera.translation() << 1, 2, 3;
+  result.objects.resize(2);
+  ObjectState& person = result.objects[0];
+  person.track = TrackId(4);
+  person.class_name = "person";
+  person.category = Category::kDynamic;
+  person.dynamic = true;
+  person.reason = StateReason::kDynamicClass;
+  person.box = {10, 20.26, 30, 40};
+  person.filled = true;
+  ObjectState& chair = result.objects[1];
+  chair.track = TrackId(7);
+  chair.class_name = "chair \"\xff";
+  chair.category = Category::kPotentiallyDynamic;
+  chair.dynamic = true;
+  chair.reason = StateReason::kTouching;
+  chair.person = TrackId(4);
+  chair.box = {1, 2, 3, 4};
+  chair.motion = {.state = MotionState::kMovedBySomeone,
+                  .p_world = Eigen::Vector3d(3, 2, 3.00004),
+                  .velocity_m_s = {0.5, 0, -0.00001},
+                  .velocity_error_m_s = 0.1,
+                  .by = TrackId(4)};
   return result;
 }
 
@@ -61,9 +55,9 @@ std::vector<json> lines_of(const std::string& text) {
 }
 
 TEST(ObjectLog, SaysAllOfAnObject) {
-  const FrameResult result = pushed_chair();
-  const std::vector<LoggedFrame> log = {log_frame({5.0, "5.000000"}, result)};
-  const Trajectory as_it_was = {{{5.0, "5.000000"}, result.tracked.T_world_camera}};
+  const FrameResult result = pushed_chair({5.0, "5.000000"});
+  const std::vector<LoggedFrame> log = {log_frame(result)};
+  const Trajectory as_it_was = {{{5.0, "5.000000"}, result.T_world_camera}};
   const std::vector<json> lines = lines_of(objects_jsonl(log, as_it_was));
   ASSERT_EQ(lines.size(), 1U);
   EXPECT_EQ(lines[0].at("stamp"), "5.000000");
@@ -93,8 +87,9 @@ TEST(ObjectLog, SaysAllOfAnObject) {
 }
 
 TEST(ObjectLog, PlacesAreUnderFinalPoses) {
-  const FrameResult result = pushed_chair();
-  const std::vector<LoggedFrame> log = {log_frame({4.0, "4"}, {}), log_frame({5.0, "5"}, result)};
+  FrameResult empty;
+  empty.stamp = {4.0, "4"};
+  const std::vector<LoggedFrame> log = {log_frame(empty), log_frame(pushed_chair({5.0, "5"}))};
   // The chair is 2 m straight ahead of the camera; its velocity leads away from it.
   Trajectory corrected(1);
   corrected[0].stamp = {5.0, "5"};
@@ -107,26 +102,26 @@ TEST(ObjectLog, PlacesAreUnderFinalPoses) {
 }
 
 TEST(ObjectLog, WithoutAPoseNothingIsSaidOfThePlace) {
-  const std::vector<LoggedFrame> log = {log_frame({5.0, "5"}, pushed_chair())};
+  const std::vector<LoggedFrame> log = {log_frame(pushed_chair({5.0, "5"}))};
   const json chair = lines_of(objects_jsonl(log, {})).at(0).at("objects").at(1);
   EXPECT_TRUE(chair.at("p_world").is_null());
   EXPECT_TRUE(chair.at("v_world").is_null());
 }
 
 TEST(ObjectLog, KeysStayInOrder) {
-  const std::string text = objects_jsonl(std::vector{log_frame({5.0, "5"}, pushed_chair())}, {});
+  const std::string text = objects_jsonl(std::vector{log_frame(pushed_chair({5.0, "5"}))}, {});
   EXPECT_EQ(text.substr(0, 62),
             R"({"stamp":"5","objects":[{"track":4,"class":"person","category")");
   EXPECT_EQ(text.back(), '\n');
 }
 
 TEST(ObjectLog, SumsUpEachTrack) {
-  FrameResult apart = pushed_chair();
-  apart.dynamics.judged.states[1].dynamic = false;
-  apart.dynamics.judged.states[1].reason = StateReason::kBoxesApart;
-  apart.dynamics.motions[1].motion = Motion::kStill;
+  FrameResult apart = pushed_chair({2, "2"});
+  apart.objects[1].dynamic = false;
+  apart.objects[1].reason = StateReason::kBoxesApart;
+  apart.objects[1].motion.state = MotionState::kStill;
   const std::vector<LoggedFrame> log = {
-      log_frame({1, "1"}, pushed_chair()), log_frame({2, "2"}, apart), log_frame({3, "3"}, apart)};
+      log_frame(pushed_chair({1, "1"})), log_frame(apart), log_frame(apart)};
   const std::vector<ObjectSummary> summaries = summarize_objects(log);
   ASSERT_EQ(summaries.size(), 2U);
   EXPECT_EQ(summaries[0].track, 4U);

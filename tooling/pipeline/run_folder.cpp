@@ -27,7 +27,7 @@ void prepare_run_folder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error || !std::filesystem::is_directory(folder)) {
-    throw Error("{}: cannot make this folder ({}); choose another with --out",
+    throw Error("{}: cannot make this folder ({}); choose another folder",
                 folder.string(),
                 error ? error.message() : "a file has its name");
   }

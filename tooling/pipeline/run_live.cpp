@@ -84,13 +84,12 @@ double LiveLoop::process(const FramePtr& frame) {
   FrameObjects objects =
       own ? *std::move(own) : tracker_.carry_to(frame->id, frame->stamp, frame->depth);
   const double prepared_ms = preparing.lap_ms();
+  if (feed_) log_.observers().on_stage_time("objects carried", prepared_ms);
   const FrameResult result = system_.process(frame, std::move(objects), origin);
   // After the pose, which somebody waits for.
   Stopwatch taking;
   for (FrameObjects& earlier : of_earlier) system_.take_objects(std::move(earlier));
-  if (!of_earlier.empty()) log_.add_stage_time("own objects", taking.lap_ms());
-  if (feed_) log_.add_stage_time("objects carried", prepared_ms);
-  log_.add(*frame, result);
+  if (!of_earlier.empty()) log_.observers().on_stage_time("own objects", taking.lap_ms());
   return prepared_ms + result.pose_ms;
 }
 
@@ -100,7 +99,9 @@ void run_by_clock(const LiveInput& input, LiveLoop& loop, RunLog& log, LiveRepor
   report.speed = live.speed;
   ClockedStream camera(input.stream, live.speed, *live.clock, input.options.probe);
   while (const std::optional<StreamedFrame> next = camera.next()) {
-    if (camera.dropped() > report.dropped) log.pass(camera.dropped() - report.dropped);
+    if (camera.dropped() > report.dropped) {
+      log.observers().on_dropped(camera.dropped() - report.dropped);
+    }
     report.dropped = camera.dropped();
     if (const DamagedFrame* const damaged = std::get_if<DamagedFrame>(&*next)) {
       log.skip(*damaged);
@@ -125,9 +126,9 @@ void run_recorded(const LiveInput& input, LiveLoop& loop, RunLog& log, LiveRepor
   Prefetcher<Read> reader(read, input.options.threads > 1 ? 4 : 0);
   while (const std::optional<Read> next = reader.next()) {
     const auto& [frame, reading_ms, dropped] = *next;
-    if (dropped > report.dropped) log.pass(dropped - report.dropped);
+    if (dropped > report.dropped) log.observers().on_dropped(dropped - report.dropped);
     report.dropped = dropped;
-    log.add_stage_time("reading", reading_ms);
+    log.observers().on_stage_time("reading", reading_ms);
     loop.process(frame);
   }
 }

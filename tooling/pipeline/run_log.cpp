@@ -2,18 +2,19 @@
 #include "tooling/pipeline/run_log.hpp"
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 #include <sys/resource.h>
 
 #include "stillmap/core/error.hpp"
+#include "stillmap/perception/motion/modes.hpp"
 #include "tooling/eval/map_alignment.hpp"
 #include "tooling/eval/pose_at.hpp"
-#include "tooling/pipeline/sample_frame.hpp"
 
 namespace stillmap {
 namespace {
 
-constexpr std::size_t kSamples = 8;
 constexpr std::size_t kFramesPerDamaged = 50;
 
 double peak_memory_mb() {
@@ -41,73 +42,64 @@ void add_map_at_true_poses(SequenceRun& run, const System& system, const Traject
   run.map_at_true_poses = system.map_with_poses(poses);
 }
 
+// `own` first; null is nobody.
+std::vector<Observer*> both(std::vector<Observer*> own, std::span<Observer* const> others) {
+  own.insert(own.end(), others.begin(), others.end());
+  std::erase(own, nullptr);
+  return own;
+}
+
 }  // namespace
 
-RunLog::RunLog(const FrameStream& stream, const SystemConfig& config, const RunOptions& options)
-    : stream_(stream), options_(options) {
-  with_objects_ = options.segmenter != nullptr && dynamics_mode(config.dynamics.mode).judges;
-  run_.report.frames_total = stream.size().value();
-  run_.report.dynamics_mode = config.dynamics.mode;
-}
-
-void RunLog::add_stage_time(std::string_view stage, double ms) {
-  std::vector<StageTimes>& stages = run_.report.stages;
-  const auto at = std::ranges::find(stages, stage, &StageTimes::name);
-  if (at != stages.end()) {
-    at->ms.push_back(ms);
-  } else {
-    stages.push_back({std::string(stage), {ms}});
-  }
-}
-
-void RunLog::add(const RgbdFrame& frame, const FrameResult& result) {
-  RunReport& report = run_.report;
-  report.frame_ms.push_back(result.pose_ms);
-  report.tracked_features.push_back(result.tracked_features);
-  for (const StageTime& time : result.stages) add_stage_time(time.stage, time.ms);
-  if (!has_pose(result)) report.lost.push_back(frame.stamp);
-  if (with_objects_) objects_.push_back(log_frame(result));
-  const std::size_t total = report.frames_total;
-  if (done_ * kSamples / total != (done_ + 1) * kSamples / total) {
-    report.samples.push_back(make_sample(frame, result));
-  }
-  pass(1);
-}
-
-void RunLog::pass(std::size_t frames) {
-  done_ += frames;
-  if (options_.on_progress) options_.on_progress(done_, run_.report.frames_total);
-}
+RunLog::RunLog(const FrameStream& stream,
+               const SystemConfig& config,
+               const RunOptions& options,
+               std::span<Observer* const> observers)
+    : stream_(stream),
+      options_(options),
+      dynamics_mode_(config.dynamics.mode),
+      samples_(stream.size()),
+      with_objects_(options.segmenter != nullptr && dynamics_mode(config.dynamics.mode).judges),
+      all_(both({&timing_, &frames_, &samples_, with_objects_ ? &objects_ : nullptr}, observers)) {}
 
 void RunLog::skip(const DamagedFrame& damaged) {
-  RunReport& report = run_.report;
-  report.skipped.push_back({damaged.stamp, damaged.damage});
-  const std::size_t allowed = report.frames_total / kFramesPerDamaged;
-  if (report.skipped.size() > allowed) {
+  all_.on_damaged(damaged);
+  // Of a stream whose length is not known, the frames so far, and one damaged frame at any time.
+  const std::optional<std::size_t> total = stream_.size();
+  const std::size_t allowed =
+      total ? *total / kFramesPerDamaged : 1 + frames_.frames() / kFramesPerDamaged;
+  if (frames_.damaged() > allowed) {
     throw Error("{} ({} damaged so far; at most {} of {} frames may be)",
                 damaged.damage,
-                report.skipped.size(),
+                frames_.damaged(),
                 allowed,
-                report.frames_total);
+                total.value_or(frames_.frames()));
   }
-  warn("frame skipped: " + damaged.damage);
-  pass(1);
-}
-
-void RunLog::warn(const std::string& warning) {
-  run_.report.warnings.push_back(warning);
-  if (options_.on_warning) options_.on_warning(warning);
+  all_.on_warning("frame skipped: " + damaged.damage);
 }
 
 SequenceRun RunLog::finish(System& system) {
+  SequenceRun run;
   Stopwatch finishing;
-  run_.result = system.finish();
-  add_stage_time("finishing", finishing.lap_ms());
-  RunReport& report = run_.report;
-  const RunResult& result = run_.result;
+  run.result = system.finish();
+  all_.on_stage_time("finishing", finishing.lap_ms());
+  const RunResult& result = run.result;
+  if (result.frames_elsewhere > 0) {
+    all_.on_warning(fmt::format(
+        "{} frames were tracked after a loss in a map of their own, which no known place "
+        "joins to this one: they are not in the results",
+        result.frames_elsewhere));
+  }
+
+  RunReport& report = run.report;
+  report.dynamics_mode = dynamics_mode_;
+  report.frames_total = stream_.size().value_or(frames_.frames());
+  timing_.fill(report);
+  frames_.fill(report);
+  samples_.fill(report);
   if (with_objects_) {
-    run_.objects_jsonl = objects_jsonl(objects_, result.trajectory);
-    report.objects = summarize_objects(objects_);
+    run.objects_jsonl = objects_.jsonl(result.trajectory);
+    report.objects = objects_.summaries();
   }
   report.camera = stream_.camera();
   report.camera.readout_s = system.readout_s();
@@ -115,18 +107,12 @@ SequenceRun RunLog::finish(System& system) {
   report.estimate = result.trajectory;
   report.keyframes = result.keyframes;
   report.frames_elsewhere = result.frames_elsewhere;
-  for (const ClosedLoop& loop : result.loops) report.loops.push_back({loop.earlier, loop.later});
+  report.loops = result.loops;
   report.peak_memory_mb = peak_memory_mb();
-  if (report.frames_elsewhere > 0) {
-    warn(fmt::format(
-        "{} frames were tracked after a loss in a map of their own, which no known place "
-        "joins to this one: they are not in the results",
-        report.frames_elsewhere));
-  }
   report.wall_s = wall_.lap_ms() / 1000.0;
-  if (options_.groundtruth) add_map_at_true_poses(run_, system, *options_.groundtruth);
-  run_.session = system.take_session();
-  return std::move(run_);
+  if (options_.groundtruth) add_map_at_true_poses(run, system, *options_.groundtruth);
+  run.session = system.take_session();
+  return run;
 }
 
 }  // namespace stillmap

@@ -1,45 +1,52 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
+#include <span>
 #include <string>
-#include <string_view>
-#include <vector>
 
 #include "stillmap/core/stopwatch.hpp"
 #include "stillmap/sensor/frame_stream.hpp"
+#include "stillmap/session/system_config.hpp"
 #include "stillmap/system/system.hpp"
+#include "tooling/pipeline/frame_log.hpp"
 #include "tooling/pipeline/object_log.hpp"
+#include "tooling/pipeline/run_observer.hpp"
 #include "tooling/pipeline/run_sequence.hpp"
+#include "tooling/pipeline/sample_log.hpp"
+#include "tooling/pipeline/timing_log.hpp"
 
 namespace stillmap {
 
-/// Keeps what a run has to tell, frame by frame, and ends it.
+/// The observers that make a run's report, and those from outside; ends the run.
 class RunLog {
  public:
-  /// What is referred to outlives the log; the run's time begins now.
-  RunLog(const FrameStream& stream, const SystemConfig& config, const RunOptions& options);
+  /// What is referred to outlives the log. The run's time begins now.
+  RunLog(const FrameStream& stream,
+         const SystemConfig& config,
+         const RunOptions& options,
+         std::span<Observer* const> observers);
+  RunLog(const RunLog&) = delete;
+  RunLog& operator=(const RunLog&) = delete;
 
-  void add(const RgbdFrame& frame, const FrameResult& result);
-  void add_stage_time(std::string_view stage, double ms);
-  /// A damaged frame. Throws Error when there are too many.
+  /// A frame is damaged. Throws Error when too many are.
   void skip(const DamagedFrame& damaged);
-  /// So many frames are done with, without more to tell of them.
-  void pass(std::size_t frames);
+  /// All observers: for the system to tell of its frames, and for what else there is to tell.
+  [[nodiscard]] RunObserver& observers() { return all_; }
 
-  /// Ends the run. Once, as the last call.
+  /// Ends the run of a system that tells observers() of its frames. Once, as the last call.
   [[nodiscard]] SequenceRun finish(System& system);
 
  private:
-  void warn(const std::string& warning);
-
   Stopwatch wall_;
   const FrameStream& stream_;
   const RunOptions& options_;
-  bool with_objects_ = false;
-  SequenceRun run_;
-  std::vector<LoggedFrame> objects_;
-  std::size_t done_ = 0;
+  std::string dynamics_mode_;
+  TimingLog timing_;
+  FrameLog frames_;
+  SampleLog samples_;
+  ObjectLog objects_;
+  bool with_objects_;
+  ObserverList all_;
 };
 
 }  // namespace stillmap

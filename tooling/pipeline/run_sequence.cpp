@@ -13,23 +13,25 @@ namespace {
 // As fast as it goes, no frame left out.
 void run_through(System& system, RunLog& log, FramePreparation& prepared) {
   while (std::optional<FramePreparation::Step> step = prepared.next()) {
-    for (const StageTime& time : step->times) log.add_stage_time(time.stage, time.ms);
+    for (const StageTime& time : step->times) log.observers().on_stage_time(time.stage, time.ms);
     if (step->damaged) log.skip(*step->damaged);
-    for (PreparedFrame& ready : step->ready) {
-      const FramePtr frame = ready.frame;
-      log.add(*frame, system.process(std::move(ready)));
-    }
+    for (PreparedFrame& ready : step->ready) system.process(std::move(ready));
   }
 }
 
 }  // namespace
 
-SequenceRun run_sequence(FrameStream& stream, const SystemConfig& config, RunOptions options) {
-  RunLog log(stream, config, options);
+SequenceRun run_sequence(FrameStream& stream,
+                         const SystemConfig& config,
+                         RunOptions options,
+                         std::span<Observer* const> observers) {
+  RunLog log(stream, config, options, observers);
   System system(config,
                 stream.camera(),
                 {.threads = options.threads,
                  .localize_only = options.localize_only,
+                 .snapshot_every_frames = options.snapshot_every_frames,
+                 .observers = {&log.observers()},
                  .probe = options.probe});
   if (options.start) system.load(std::move(*options.start));
   if (options.live) {

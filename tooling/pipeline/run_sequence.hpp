@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <functional>
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "stillmap/session/system_config.hpp"
 #include "stillmap/system/system.hpp"
 #include "tooling/pipeline/live_record.hpp"
+#include "tooling/pipeline/run_observer.hpp"
 #include "tooling/report/run_report.hpp"
 
 namespace stillmap {
@@ -31,11 +33,12 @@ struct RunOptions {
   std::optional<Session> start;          ///< a saved session that the run goes on from
   bool localize_only = false;            ///< the map stays as `start` has it
   const Segmenter* segmenter = nullptr;  ///< what finds objects; none where null
+  /// Observers are given the dense map so far whenever that many frames have been processed; 0: at
+  /// the end alone.
+  std::int64_t snapshot_every_frames = 0;
   /// Where there is one, the map is made once more with its poses.
   std::optional<Trajectory> groundtruth;
-  std::function<void(std::size_t done, std::size_t total)> on_progress;  ///< may be empty
-  std::function<void(const std::string&)> on_warning;                    ///< may be empty
-  StageProbe probe = {};                                                 ///< of tests
+  StageProbe probe = {};  ///< of tests
 };
 
 struct SequenceRun {
@@ -56,9 +59,11 @@ struct SequenceRun {
 /// Runs the system over a sequence. A damaged image inside a long sequence costs its frame, with a
 /// warning; more than one frame in fifty, or any in a sequence below fifty frames, is an Error, and
 /// so is an image of the wrong kind or size. The result does not depend on the number of threads;
-/// that of a live run depends on the clock, by what its record says and nothing else.
+/// that of a live run depends on the clock, by what its record says and nothing else. `observers`
+/// outlive the run; see RunObserver for what they may hear besides.
 [[nodiscard]] SequenceRun run_sequence(FrameStream& stream,
                                        const SystemConfig& config,
-                                       RunOptions options);
+                                       RunOptions options,
+                                       std::span<Observer* const> observers = {});
 
 }  // namespace stillmap

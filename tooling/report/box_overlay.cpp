@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include <fmt/core.h>
 
@@ -19,8 +21,8 @@ struct Label {
   double x = 0, y = 0;  // its lower left corner
 };
 
-std::optional<Eigen::AlignedBox2d> part_in_image(const SampleObject& object, const cv::Mat& image) {
-  const Eigen::AlignedBox2d& box = object.box_px;
+std::optional<Eigen::AlignedBox2d> part_in_image(const PixelBox& px, const cv::Mat& image) {
+  const Eigen::AlignedBox2d box(Eigen::Vector2d(px.x0, px.y0), Eigen::Vector2d(px.x1, px.y1));
   if (!box.min().allFinite() || !box.max().allFinite()) return std::nullopt;
   const Eigen::AlignedBox2d all(Eigen::Vector2d::Zero(), Eigen::Vector2d(image.cols, image.rows));
   const Eigen::AlignedBox2d part = box.intersection(all);
@@ -29,12 +31,12 @@ std::optional<Eigen::AlignedBox2d> part_in_image(const SampleObject& object, con
 }
 
 /// On the box where there is room above it, else inside; not on a label that is there already.
-Label place_label(const SampleObject& object,
+Label place_label(std::string text,
                   const Eigen::AlignedBox2d& box,
                   double unit,
                   const std::vector<Label>& others,
                   const cv::Mat& image) {
-  Label label{fmt::format("{} #{}: {}", object.class_name, object.track, object.reason), 0, 0};
+  Label label{std::move(text), 0, 0};
   const double width = static_cast<double>(label.text.size()) * kLetterWidth * unit;
   const double line = kTextHeight * unit;
   label.x = std::max(0.0, std::min(box.min().x(), image.cols - width));
@@ -50,13 +52,13 @@ Label place_label(const SampleObject& object,
 
 }  // namespace
 
-std::string box_overlay_svg(const SampleFrame& frame) {
-  const cv::Mat& image = frame.image.mat;
+std::string box_overlay_svg(const ReportSample& sample) {
+  const cv::Mat& image = sample.first.color.mat;
   const double unit = image.cols / 640.0;
   std::string boxes, texts;
   std::vector<Label> labels;
-  for (const SampleObject& object : frame.objects) {
-    const std::optional<Eigen::AlignedBox2d> box = part_in_image(object, image);
+  for (const ObjectState& object : sample.second.objects) {
+    const std::optional<Eigen::AlignedBox2d> box = part_in_image(object.box, image);
     if (!box) continue;
     const char* const kind = object.dynamic ? "dyn" : "sta";
     boxes += fmt::format(
@@ -67,7 +69,11 @@ std::string box_overlay_svg(const SampleFrame& frame) {
         box->min().y(),
         box->sizes().x(),
         box->sizes().y());
-    labels.push_back(place_label(object, *box, unit, labels, image));
+    std::string text = fmt::format("{} #{}: {}",
+                                   object.class_name,
+                                   object.track.value,
+                                   reason_name(object.reason));
+    labels.push_back(place_label(std::move(text), *box, unit, labels, image));
     texts += fmt::format("<text class=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>",
                          kind,
                          labels.back().x + 2 * unit,

@@ -11,6 +11,6 @@ namespace stillmap {
 /// the number of its track, its class, and why it is taken as dynamic (class "dyn") or static
 /// ("sta"). Boxes that were filled in are dashed. Those outside the image and those that are no
 /// boxes are left out; empty when nothing is left.
-[[nodiscard]] std::string box_overlay_svg(const SampleFrame& frame);
+[[nodiscard]] std::string box_overlay_svg(const ReportSample& sample);
 
 }  // namespace stillmap

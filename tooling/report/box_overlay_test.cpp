@@ -2,6 +2,8 @@
 #include "tooling/report/box_overlay.hpp"
 
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include <gmock/gmock.h>
 
@@ -11,21 +13,21 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-SampleObject object_at(double x0, double y0, double x1, double y1) {
-  SampleObject object;
-  object.track = 12;
+ObjectState object_at(double x0, double y0, double x1, double y1) {
+  ObjectState object;
+  object.track = TrackId(12);
   object.class_name = "chair";
-  object.reason = "somebody at it";
+  object.reason = StateReason::kTouching;
   object.dynamic = true;
-  object.box_px = {Eigen::Vector2d(x0, y0), Eigen::Vector2d(x1, y1)};
+  object.box = {x0, y0, x1, y1};
   return object;
 }
 
-SampleFrame frame_with(std::vector<SampleObject> objects) {
-  SampleFrame frame;
-  frame.image = ColorImage(cv::Mat3b(480, 640));
-  frame.objects = std::move(objects);
-  return frame;
+ReportSample frame_with(std::vector<ObjectState> objects) {
+  ReportSample sample;
+  sample.first.color = ColorImage(cv::Mat3b(480, 640));
+  sample.second.objects = std::move(objects);
+  return sample;
 }
 
 TEST(BoxOverlay, HasBoxAndLabel) {
@@ -39,7 +41,7 @@ TEST(BoxOverlay, HasBoxAndLabel) {
 }
 
 TEST(BoxOverlay, TellsStaticAndFilledApart) {
-  SampleObject object = object_at(100, 50, 160, 90);
+  ObjectState object = object_at(100, 50, 160, 90);
   object.dynamic = false;
   object.filled = true;
   EXPECT_THAT(box_overlay_svg(frame_with({object})), HasSubstr("<rect class=\"sta filled\""));
@@ -53,7 +55,7 @@ TEST(BoxOverlay, IsCutAtTheImagesEdge) {
 }
 
 TEST(BoxOverlay, LabelsDoNotCoverEachOther) {
-  const SampleObject object = object_at(100, 50, 160, 90);
+  const ObjectState object = object_at(100, 50, 160, 90);
   const std::string svg = box_overlay_svg(frame_with({object, object}));
   EXPECT_THAT(svg, HasSubstr("y=\"46.0\">chair"));
   EXPECT_THAT(svg, HasSubstr("y=\"61.0\">chair"));
@@ -72,7 +74,7 @@ TEST(BoxOverlay, LeavesOutWhatIsNotInTheImage) {
 }
 
 TEST(BoxOverlay, EscapesNames) {
-  SampleObject object = object_at(100, 50, 160, 90);
+  ObjectState object = object_at(100, 50, 160, 90);
   object.class_name = "<b>";
   const std::string svg = box_overlay_svg(frame_with({object}));
   EXPECT_THAT(svg, HasSubstr("&lt;b&gt;"));

@@ -11,12 +11,16 @@ namespace stillmap {
 namespace {
 
 constexpr std::array<VerdictStyle, 6> kStyles = {
-    {{SampleVerdict::kUntracked, "found but not tracked", 2, {165, 165, 165}},
-     {SampleVerdict::kMissingDepth, "with depth missing", 2, {70, 160, 255}},
-     {SampleVerdict::kDepthJump, "at a jump of depth", 2, {255, 150, 0}},
-     {SampleVerdict::kDynamic, "dynamic", 3, {255, 60, 200}},
-     {SampleVerdict::kStaticInBox, "static in the box of something dynamic", 3, {0, 230, 255}},
-     {SampleVerdict::kTracked, "tracked", 3, {40, 255, 110}}}};
+    {{FeatureVerdict::kStable, false, "found but not tracked", 2, {165, 165, 165}},
+     {FeatureVerdict::kMissingDepth, false, "with depth missing", 2, {70, 160, 255}},
+     {FeatureVerdict::kUnstableDepth, false, "at a jump of depth", 2, {255, 150, 0}},
+     {FeatureVerdict::kDynamic, false, "dynamic", 3, {255, 60, 200}},
+     {FeatureVerdict::kStaticInBox,
+      false,
+      "static in the box of something dynamic",
+      3,
+      {0, 230, 255}},
+     {FeatureVerdict::kStable, true, "tracked", 3, {40, 255, 110}}}};
 
 cv::Scalar scalar(Rgb color) {
   return {
@@ -69,21 +73,29 @@ std::span<const VerdictStyle> verdict_styles() {
   return kStyles;
 }
 
-ColorImage draw_frame(const SampleFrame& frame, int max_width_px) {
-  const cv::Mat3b& image = frame.image.mat;
+const VerdictStyle& style_of(const FeatureMark& feature) {
+  return *std::ranges::find_if(kStyles, [&](const VerdictStyle& style) {
+    const bool stable = feature.verdict == FeatureVerdict::kStable;
+    return style.verdict == feature.verdict && (!stable || style.tracked == feature.tracked);
+  });
+}
+
+ColorImage draw_frame(const ReportSample& sample, int max_width_px) {
+  const auto& [frame, result] = sample;
+  const cv::Mat3b& image = frame.color.mat;
   if (image.empty()) return {};
-  ColorImage drawn = resized(frame.image, max_width_px);
+  ColorImage drawn = resized(frame.color, max_width_px);
   cv::Mat3b& picture = drawn.mat;
-  const auto fit = [&](const cv::Mat1b& mask) {
-    return fitted(mask, image.size(), picture.size());
+  const auto fit = [size = image.size(), &picture](const cv::Mat1b& mask) {
+    return fitted(mask, size, picture.size());
   };
-  tint(picture, fit(frame.extended_mask), MaskStyle::kExtended, 0.4);
-  tint(picture, fit(frame.jumps), MaskStyle::kJumps, 0.45);
-  outline(picture, fit(frame.raw_mask), MaskStyle::kRaw);
+  tint(picture, fit(result.extended_mask.mat), MaskStyle::kExtended, 0.4);
+  tint(picture, fit(result.depth_jumps.mat), MaskStyle::kJumps, 0.45);
+  outline(picture, fit(result.network_mask.mat), MaskStyle::kNetwork);
   const float scale = static_cast<float>(picture.cols) / static_cast<float>(image.cols);
   for (const VerdictStyle& style : kStyles) {
-    for (const SampleFeature& feature : frame.features) {
-      if (feature.verdict == style.verdict) draw_ring(picture, feature.raw_px * scale, style);
+    for (const FeatureMark& feature : result.features) {
+      if (&style_of(feature) == &style) draw_ring(picture, feature.raw_px * scale, style);
     }
   }
   return drawn;

@@ -9,20 +9,24 @@
 
 namespace stillmap {
 
-/// How features of one verdict are drawn, and what a legend calls them.
+/// How features of one kind are drawn, and the name of the kind in a legend.
 struct VerdictStyle {
-  SampleVerdict verdict;
+  FeatureVerdict verdict = FeatureVerdict::kStable;
+  bool tracked = false;  ///< matched to the map; asked of stable features only
   std::string_view name;
   int radius_px = 0;  ///< of a ring
   Rgb color{};
 };
 
-/// The styles of all verdicts; later ones are drawn over earlier ones.
+/// The styles of all features; later ones are drawn over earlier ones.
 [[nodiscard]] std::span<const VerdictStyle> verdict_styles();
+
+/// The style of a feature: one of verdict_styles().
+[[nodiscard]] const VerdictStyle& style_of(const FeatureMark& feature);
 
 /// Colours of the masks: what the network's has is outlined, the others are tinted.
 struct MaskStyle {
-  static constexpr Rgb kRaw = {255, 255, 255};
+  static constexpr Rgb kNetwork = {255, 255, 255};
   static constexpr Rgb kExtended = {235, 40, 30};
   static constexpr Rgb kJumps = {255, 200, 0};
 };
@@ -30,6 +34,6 @@ struct MaskStyle {
 /// A copy of the frame's image, made smaller where it is wider than `max_width_px`, with its masks
 /// and features drawn, without its objects' boxes. Features outside the image and masks of another
 /// size are left out; an empty image stays empty.
-[[nodiscard]] ColorImage draw_frame(const SampleFrame& frame, int max_width_px);
+[[nodiscard]] ColorImage draw_frame(const ReportSample& sample, int max_width_px);
 
 }  // namespace stillmap

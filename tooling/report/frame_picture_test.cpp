@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tooling/report/frame_picture.hpp"
 
-#include <algorithm>
 #include <limits>
+#include <string>
 
 #include <gtest/gtest.h>
 
 namespace stillmap {
 namespace {
 
-SampleFrame gray_frame(int width, int height) {
-  SampleFrame frame;
-  frame.image = ColorImage(cv::Mat3b(height, width, cv::Vec3b(60, 60, 60)));
-  return frame;
+ReportSample gray_frame(int width, int height) {
+  ReportSample sample;
+  sample.first.color = ColorImage(cv::Mat3b(height, width, cv::Vec3b(60, 60, 60)));
+  return sample;
+}
+
+FeatureMark tracked_at(float x, float y) {
+  return {{x, y}, FeatureVerdict::kStable, true};
 }
 
 bool greenish(const cv::Vec3b& c) {
@@ -20,8 +24,8 @@ bool greenish(const cv::Vec3b& c) {
 }
 
 TEST(DrawFrame, RingsInTheirColoursOnACopy) {
-  SampleFrame frame = gray_frame(100, 80);
-  frame.features = {{{30, 40}, SampleVerdict::kTracked}, {{70, 20}, SampleVerdict::kUntracked}};
+  ReportSample frame = gray_frame(100, 80);
+  frame.second.features = {tracked_at(30, 40), {{70, 20}, FeatureVerdict::kStable, false}};
   const ColorImage drawn = draw_frame(frame, 640);
   EXPECT_EQ(drawn.mat.size(), cv::Size(100, 80));
   EXPECT_TRUE(greenish(drawn.mat(40, 33)));
@@ -29,27 +33,27 @@ TEST(DrawFrame, RingsInTheirColoursOnACopy) {
   EXPECT_EQ(drawn.mat(40, 30), cv::Vec3b(60, 60, 60));  // the ring's middle stays visible
   EXPECT_GT(drawn.mat(20, 72)[0], 120);
   EXPECT_FALSE(greenish(drawn.mat(20, 72)));
-  EXPECT_EQ(frame.image.mat(40, 33), cv::Vec3b(60, 60, 60));
+  EXPECT_EQ(frame.first.color.mat(40, 33), cv::Vec3b(60, 60, 60));
 }
 
 TEST(DrawFrame, WideImagesBecomeSmallerAndFeaturesMoveAlong) {
-  SampleFrame frame = gray_frame(400, 200);
-  frame.features = {{{200, 100}, SampleVerdict::kTracked}};
+  ReportSample frame = gray_frame(400, 200);
+  frame.second.features = {tracked_at(200, 100)};
   const ColorImage drawn = draw_frame(frame, 100);
   EXPECT_EQ(drawn.mat.size(), cv::Size(100, 50));
   EXPECT_TRUE(greenish(drawn.mat(25, 53)));
 }
 
 TEST(DrawFrame, MasksAreOutlinedAndTinted) {
-  SampleFrame frame = gray_frame(100, 80);
+  ReportSample frame = gray_frame(100, 80);
   const auto mask_of = [](const cv::Rect& area) {
     cv::Mat1b mask(80, 100, std::uint8_t{0});
     mask(area).setTo(3);
     return mask;
   };
-  frame.extended_mask = mask_of({10, 10, 40, 40});
-  frame.raw_mask = mask_of({20, 20, 20, 20});
-  frame.jumps = mask_of({70, 10, 10, 10});
+  frame.second.extended_mask.mat = mask_of({10, 10, 40, 40});
+  frame.second.network_mask.mat = mask_of({20, 20, 20, 20});
+  frame.second.depth_jumps.mat = mask_of({70, 10, 10, 10});
   const cv::Mat3b drawn = draw_frame(frame, 640).mat;
   const cv::Vec3b extended = drawn(12, 12), inside_raw = drawn(30, 30), jump = drawn(15, 75);
   EXPECT_GT(extended[0], extended[1] + 50);  // red
@@ -62,31 +66,39 @@ TEST(DrawFrame, MasksAreOutlinedAndTinted) {
 }
 
 TEST(DrawFrame, MasksBecomeSmallerWithTheImage) {
-  SampleFrame frame = gray_frame(400, 200);
-  frame.jumps = cv::Mat1b(200, 400, std::uint8_t{0});
-  frame.jumps(cv::Rect(0, 0, 200, 200)).setTo(1);
+  ReportSample frame = gray_frame(400, 200);
+  frame.second.depth_jumps.mat = cv::Mat1b(200, 400, std::uint8_t{0});
+  frame.second.depth_jumps.mat(cv::Rect(0, 0, 200, 200)).setTo(1);
   const cv::Mat3b drawn = draw_frame(frame, 100).mat;
   EXPECT_GT(drawn(25, 48)[0], 130);
   EXPECT_EQ(drawn(25, 52), cv::Vec3b(60, 60, 60));
 }
 
-TEST(VerdictStyles, HasEachFateOnce) {
-  for (const SampleVerdict verdict : {SampleVerdict::kUntracked, SampleVerdict::kTracked}) {
-    EXPECT_EQ(std::ranges::count(verdict_styles(), verdict, &VerdictStyle::verdict), 1);
+TEST(VerdictStyles, TellEveryVerdictApart) {
+  const auto name = [](FeatureVerdict verdict, bool tracked) {
+    return std::string(style_of({{1, 1}, verdict, tracked}).name);
+  };
+  EXPECT_EQ(name(FeatureVerdict::kStable, true), "tracked");
+  EXPECT_EQ(name(FeatureVerdict::kStable, false), "found but not tracked");
+  for (const bool tracked : {false, true}) {
+    EXPECT_EQ(name(FeatureVerdict::kMissingDepth, tracked), "with depth missing");
+    EXPECT_EQ(name(FeatureVerdict::kUnstableDepth, tracked), "at a jump of depth");
+    EXPECT_EQ(name(FeatureVerdict::kDynamic, tracked), "dynamic");
+    EXPECT_EQ(name(FeatureVerdict::kStaticInBox, tracked),
+              "static in the box of something dynamic");
   }
 }
 
 TEST(DrawFrame, HostilePlacesAndEmptyImages) {
-  SampleFrame frame = gray_frame(50, 50);
+  ReportSample frame = gray_frame(50, 50);
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-  for (const Eigen::Vector2f& at : {Eigen::Vector2f(kNan, 3), {1e30F, 3}, {-1, 3}, {3, 50}}) {
-    frame.features.push_back({at, SampleVerdict::kTracked});
-  }
-  frame.raw_mask = cv::Mat1b(10, 10, std::uint8_t{1});
-  frame.jumps = cv::Mat1b(60, 50, std::uint8_t{1});
+  frame.second.features = {
+      tracked_at(kNan, 3), tracked_at(1e30F, 3), tracked_at(-1, 3), tracked_at(3, 50)};
+  frame.second.network_mask.mat = cv::Mat1b(10, 10, std::uint8_t{1});
+  frame.second.depth_jumps.mat = cv::Mat1b(60, 50, std::uint8_t{1});
   const ColorImage drawn = draw_frame(frame, 640);
   for (const cv::Vec3b& c : drawn.mat) EXPECT_EQ(c, cv::Vec3b(60, 60, 60));
-  EXPECT_TRUE(draw_frame(SampleFrame{}, 640).mat.empty());
+  EXPECT_TRUE(draw_frame(ReportSample{}, 640).mat.empty());
 }
 
 }  // namespace

@@ -157,8 +157,8 @@ std::string details_html(const RunReport& report) {
   if (!report.skipped.empty()) {
     out += fmt::format("<details><summary>{} could not be read</summary>{}</details>",
                        plural(report.skipped.size(), "frame"),
-                       list_html(report.skipped, [](const SkippedFrame& f) {
-                         return f.stamp.text + ": " + f.message;
+                       list_html(report.skipped, [](const DamagedFrame& f) {
+                         return f.stamp.text + ": " + f.damage;
                        }));
   }
   if (!report.lost.empty()) {
@@ -181,7 +181,7 @@ double first_stamp_s(const RunReport& report) {
   if (!report.estimate.empty()) consider(report.estimate.front().stamp);
   if (!report.lost.empty()) consider(report.lost.front());
   if (!report.skipped.empty()) consider(report.skipped.front().stamp);
-  if (!report.samples.empty()) consider(report.samples.front().stamp);
+  if (!report.samples.empty()) consider(report.samples.front().first.stamp);
   return first == std::numeric_limits<double>::infinity() ? 0 : first;
 }
 

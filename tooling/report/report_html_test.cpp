@@ -51,7 +51,7 @@ RunReport full_report(const PointCloud& map) {
   report.config_yaml = "seed: 1\n";
   report.frames_total = 62;
   report.frames_tracked = 60;
-  report.skipped.emplace_back(Stamp{101.05, "101.05"}, "rgb/a.png: too short");
+  report.skipped.push_back({FrameId(10), {101.05, "101.05"}, "rgb/a.png: too short"});
   report.lost.emplace_back(101.06, "101.06");
   report.estimate = half_circle(60);
   report.keyframes = half_circle(10);
@@ -64,23 +64,24 @@ RunReport full_report(const PointCloud& map) {
   report.stages.emplace_back("map", std::vector<double>(10, 31.0));
   report.tracked_features.assign(61, 300);
   report.peak_memory_mb = 250;
-  SampleFrame sample;
-  sample.stamp = {100.5, "100.500000"};
-  sample.image = ColorImage(cv::Mat3b(48, 64, cv::Vec3b(40, 60, 80)));
-  sample.features = {{{10, 10}, SampleVerdict::kTracked},
-                     {{30, 20}, SampleVerdict::kTracked},
-                     {{50, 40}, SampleVerdict::kUntracked}};
-  SampleObject person;
-  person.track = 3;
+  RgbdFrame frame;
+  frame.stamp = {100.5, "100.500000"};
+  frame.color = ColorImage(cv::Mat3b(48, 64, cv::Vec3b(40, 60, 80)));
+  FrameResult result;
+  result.features = {{{10, 10}, FeatureVerdict::kStable, true},
+                     {{30, 20}, FeatureVerdict::kStable, true},
+                     {{50, 40}, FeatureVerdict::kStable, false}};
+  ObjectState person;
+  person.track = TrackId(3);
   person.class_name = "person";
-  person.reason = "dynamic class";
+  person.reason = StateReason::kDynamicClass;
   person.dynamic = true;
-  person.box_px = {Eigen::Vector2d(5, 6), Eigen::Vector2d(25, 40)};
-  sample.objects = {person};
-  sample.raw_mask = cv::Mat1b(48, 64, std::uint8_t{0});
-  sample.raw_mask(cv::Rect(8, 8, 10, 10)).setTo(1);
-  sample.extended_mask = sample.raw_mask.clone();
-  report.samples = {sample};
+  person.box = {5, 6, 25, 40};
+  result.objects = {person};
+  result.network_mask.mat = cv::Mat1b(48, 64, std::uint8_t{0});
+  result.network_mask.mat(cv::Rect(8, 8, 10, 10)).setTo(1);
+  result.extended_mask.mat = result.network_mask.mat.clone();
+  report.samples.emplace_back(frame, result);
   report.dynamics_mode = "full";
   ObjectSummary chair;
   chair.track = 4;
@@ -191,13 +192,13 @@ TEST(ReportHtml, EveryTextIsEscaped) {
   RunReport report = full_report(map);
   report.version = report.sequence = report.camera.name = report.config_yaml = evil;
   report.warnings = {evil};
-  report.skipped.at(0).message = evil;
+  report.skipped.at(0).damage = evil;
   report.skipped.at(0).stamp.text = evil;
   report.lost.at(0).text = evil;
   report.stages.at(0).name = evil;
-  report.samples.at(0).stamp.text = evil;
-  report.samples.at(0).objects.at(0).class_name = evil;
-  report.samples.at(0).objects.at(0).reason = evil;
+  auto& [frame, result] = report.samples.at(0);
+  frame.stamp.text = evil;
+  result.objects.at(0).class_name = evil;
   report.dynamics_mode = evil;
   ObjectSummary& object = report.objects->at(0);
   object.class_name = object.category = object.main_reason = evil;

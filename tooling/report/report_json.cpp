@@ -37,8 +37,8 @@ Json camera_json(const CameraModel& camera) {
 
 Json all_frames_json(const RunReport& report) {
   Json skipped = Json::array();
-  for (const SkippedFrame& frame : report.skipped) {
-    skipped.push_back({{"stamp", frame.stamp.text}, {"message", frame.message}});
+  for (const DamagedFrame& frame : report.skipped) {
+    skipped.push_back({{"stamp", frame.stamp.text}, {"message", frame.damage}});
   }
   Json lost = Json::array();
   for (const Stamp& stamp : report.lost) lost.push_back(stamp.text);
@@ -64,7 +64,7 @@ Json tracking_json(const RunReport& report) {
 
 Json loops_json(const RunReport& report) {
   Json loops = Json::array();
-  for (const LoopClosure& loop : report.loops) {
+  for (const ClosedLoop& loop : report.loops) {
     loops.push_back({{"earlier", loop.earlier.text}, {"later", loop.later.text}});
   }
   return loops;

@@ -22,7 +22,7 @@ RunReport small_report(const PointCloud& map) {
   report.camera.k3 = 0.25;
   report.frames_total = 8;
   report.frames_tracked = 6;
-  report.skipped.emplace_back(Stamp{1.5, "1.500000"}, "rgb/b.png: truncated");
+  report.skipped.push_back({FrameId(1), {1.5, "1.500000"}, "rgb/b.png: truncated"});
   report.lost.emplace_back(2.0, "2.000");
   report.keyframes.resize(3);
   report.wall_s = 4.5;

@@ -5,27 +5,20 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include <Eigen/Core>
-#include <Eigen/Geometry>
-#include <opencv2/core/mat.hpp>
-
-#include "stillmap/core/images.hpp"
 #include "stillmap/core/point_cloud.hpp"
+#include "stillmap/core/rgbd_frame.hpp"
 #include "stillmap/core/trajectory.hpp"
 #include "stillmap/geometry/camera.hpp"
+#include "stillmap/sensor/frame_stream.hpp"
+#include "stillmap/system/results.hpp"
 #include "tooling/eval/ate.hpp"
 #include "tooling/eval/map_quality.hpp"
 #include "tooling/eval/rpe.hpp"
 
 namespace stillmap {
-
-/// A frame that could not be read, and why.
-struct SkippedFrame {
-  Stamp stamp;
-  std::string message;
-};
 
 /// The times of one stage of the work, milliseconds, one for each time that it ran.
 struct StageTimes {
@@ -33,42 +26,9 @@ struct StageTimes {
   std::vector<double> ms;
 };
 
-/// What became of a feature.
-enum class SampleVerdict : std::uint8_t {
-  kUntracked,     ///< of stable depth, but not matched
-  kTracked,       ///< of stable depth and matched to the map
-  kMissingDepth,  ///< a pixel round it has no depth
-  kDepthJump,     ///< depth changes suddenly round it
-  kStaticInBox,   ///< in the box of something dynamic, and seen to stand still
-  kDynamic,       ///< in such a box, and seen to move
-};
-
-struct SampleFeature {
-  Eigen::Vector2f raw_px;
-  SampleVerdict verdict = SampleVerdict::kUntracked;
-};
-
-/// Something that a network has found in a frame, or has missed there.
-struct SampleObject {
-  std::uint32_t track = 0;  ///< its number
-  std::string class_name;
-  std::string reason;  ///< why it is taken as dynamic or static
-  bool dynamic = false;
-  bool filled = false;         ///< the network has missed it
-  Eigen::AlignedBox2d box_px;  ///< may reach beyond the image
-};
-
-/// A frame shown in the report, all of it in raw pixels. The masks are as large as the image or
-/// empty.
-struct SampleFrame {
-  Stamp stamp;
-  ColorImage image;
-  std::vector<SampleFeature> features;
-  std::vector<SampleObject> objects;
-  cv::Mat1b raw_mask;       ///< not 0 where the network has something dynamic
-  cv::Mat1b extended_mask;  ///< the same after its extension
-  cv::Mat1b jumps;          ///< not 0 where depth has changed suddenly
-};
+/// A frame shown in the report, and what the system made of it. Of the images only colour is
+/// needed.
+using ReportSample = std::pair<RgbdFrame, FrameResult>;
 
 /// What is said of something that a network has found, over all frames that have it.
 struct ObjectSummary {
@@ -84,12 +44,6 @@ struct ObjectSummary {
   std::size_t dynamic = 0;           ///< of these, in which it was taken as dynamic
   std::string main_reason;           ///< why it was taken as what it was, most often
   std::vector<MotionCount> motions;  ///< how it moved in how many frames
-};
-
-/// A place that was recognised, and the map corrected.
-struct LoopClosure {
-  Stamp earlier;  ///< of the key frame that saw it before
-  Stamp later;
 };
 
 /// How a run kept up with its camera.
@@ -111,11 +65,11 @@ struct RunReport {
 
   std::size_t frames_total = 0;       ///< associated rgb-depth pairs that were asked for
   std::size_t frames_tracked = 0;     ///< poses in the trajectory
-  std::vector<SkippedFrame> skipped;  ///< unreadable ones, in order
+  std::vector<DamagedFrame> skipped;  ///< unreadable ones, in order
   std::vector<Stamp> lost;            ///< frames read but without a pose, in order
 
   std::size_t frames_elsewhere = 0;  ///< tracked in a world that nothing ties to this one
-  std::vector<LoopClosure> loops;    ///< closed in this run, in order
+  std::vector<ClosedLoop> loops;     ///< closed in this run, in order
 
   Trajectory estimate;                    ///< final poses of all tracked frames, in the run's world
   Trajectory keyframes;                   ///< the same of the key frames
@@ -134,9 +88,9 @@ struct RunReport {
   /// In the order of their numbers; nullopt when nothing looked for objects.
   std::optional<std::vector<ObjectSummary>> objects;
 
-  std::vector<SampleFrame> samples;  ///< about eight, in order
-  const PointCloud* map = nullptr;   ///< not owned, outlives the report; nullptr when none was made
-  bool map_at_true_poses = false;    ///< made with the poses of ground truth, not the estimate's
+  std::vector<ReportSample> samples;  ///< about eight, in order
+  const PointCloud* map = nullptr;  ///< not owned, outlives the report; nullptr when none was made
+  bool map_at_true_poses = false;   ///< made with the poses of ground truth, not the estimate's
   std::optional<MapQuality> map_quality;             ///< of `map`
   std::optional<MapQuality> map_quality_true_poses;  ///< of the map made with true poses
   std::vector<std::string> warnings;

@@ -34,8 +34,7 @@ class FolderSegmenter : public Segmenter {
 std::unique_ptr<Network> open_fetched(const fs::path& name, const SegmenterOptions& options) {
   const fs::path file = model_folder() / name;
   if (!path_exists(file)) {
-    throw Error("--segmenter auto: there is no {}; run tools/fetch_models, which gets it",
-                file.string());
+    throw Error("auto: there is no {}; run tools/fetch_models, which gets it", file.string());
   }
   return open_onnx_network(file, {options.threads});
 }
@@ -74,7 +73,7 @@ std::unique_ptr<Segmenter> make_segmenter(std::string_view description,
   if (description.starts_with(kNetwork) && description.size() > kNetwork.size()) {
     return make_network_segmenter(description.substr(kNetwork.size()), image, options);
   }
-  throw Error("--segmenter {}: expected detections:DIR, onnx:MODEL.onnx or auto", description);
+  throw Error("{}: expected detections:DIR, onnx:MODEL.onnx or auto", description);
 }
 
 }  // namespace stillmap

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tooling/pipeline/frame_log.hpp"
+
+#include <utility>
+
+namespace stillmap {
+
+void FrameLog::on_frame(const RgbdFrame& frame, const FrameResult& result) {
+  ++frames_;
+  tracked_features_.push_back(result.tracked_features);
+  if (!has_pose(result)) lost_.push_back(frame.stamp);
+}
+
+void FrameLog::on_damaged(const DamagedFrame& frame) {
+  ++frames_;
+  damaged_.push_back(frame);
+}
+
+void FrameLog::on_dropped(std::size_t frames) {
+  frames_ += frames;
+}
+
+void FrameLog::on_warning(const std::string& warning) {
+  warnings_.push_back(warning);
+}
+
+void FrameLog::fill(RunReport& report) {
+  report.skipped = std::move(damaged_);
+  report.lost = std::move(lost_);
+  report.tracked_features = std::move(tracked_features_);
+  report.warnings = std::move(warnings_);
+}
+
+}  // namespace stillmap

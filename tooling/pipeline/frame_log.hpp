@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "tooling/pipeline/run_observer.hpp"
+#include "tooling/report/run_report.hpp"
+
+namespace stillmap {
+
+/// Keeps what became of each frame, and the warnings.
+class FrameLog : public RunObserver {
+ public:
+  void on_frame(const RgbdFrame& frame, const FrameResult& result) override;
+  void on_damaged(const DamagedFrame& frame) override;
+  void on_dropped(std::size_t frames) override;
+  void on_warning(const std::string& warning) override;
+
+  /// The frames so far, of every kind.
+  [[nodiscard]] std::size_t frames() const { return frames_; }
+  [[nodiscard]] std::size_t damaged() const { return damaged_.size(); }
+
+  /// Puts what is known into the report. Once.
+  void fill(RunReport& report);
+
+ private:
+  std::size_t frames_ = 0;
+  std::vector<DamagedFrame> damaged_;
+  std::vector<Stamp> lost_;
+  std::vector<int> tracked_features_;
+  std::vector<std::string> warnings_;
+};
+
+}  // namespace stillmap
