@@ -13,8 +13,8 @@
 
 namespace stillmap {
 
-// The JSON objects of report.json and of printed evaluations. Keys stay in this order; unknown values
-// are null.
+// The JSON objects of report.json and of printed evaluations. Keys stay in this order; unknown
+// values are null.
 
 /// `{rmse, mean, median, std, min, max, pairs}`, metres.
 [[nodiscard]] nlohmann::ordered_json ate_json(const std::optional<AteResult>& ate);

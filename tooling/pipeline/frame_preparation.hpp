@@ -27,7 +27,7 @@ class FramePreparation {
     std::vector<PreparedFrame> ready;     ///< for System::process, in order
   };
 
-  /// `stream` and `system` outlive this.
+  /// `stream` and `system` outlive this. `ahead`: with threads.
   FramePreparation(FrameStream& stream,
                    ObjectSource objects,
                    const System& system,

@@ -9,6 +9,7 @@
 
 #include "stillmap/concurrency/prefetcher.hpp"
 #include "stillmap/core/error.hpp"
+#include "stillmap/core/stopwatch.hpp"
 #include "stillmap/perception/objects/object_tracker.hpp"
 #include "stillmap/sensor/clocked_stream.hpp"
 #include "tooling/pipeline/object_feed.hpp"

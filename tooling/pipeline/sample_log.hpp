@@ -13,7 +13,8 @@ namespace stillmap {
 /// Keeps some frames, spread evenly over the run, for the report to show.
 class SampleLog : public RunObserver {
  public:
-  /// `frames`: how many the run has; where that is not known, 8 to 15 frames are kept, else about 8.
+  /// `frames`: how many the run has; where that is not known, 8 to 15 frames are kept, else
+  /// about 8.
   explicit SampleLog(std::optional<std::size_t> frames) : total_(frames) {}
 
   void on_frame(const RgbdFrame& frame, const FrameResult& result) override;

@@ -69,10 +69,8 @@ std::string box_overlay_svg(const ReportSample& sample) {
         box->min().y(),
         box->sizes().x(),
         box->sizes().y());
-    std::string text = fmt::format("{} #{}: {}",
-                                   object.class_name,
-                                   object.track.value,
-                                   reason_name(object.reason));
+    std::string text = fmt::format(
+        "{} #{}: {}", object.class_name, object.track.value, reason_name(object.reason));
     labels.push_back(place_label(std::move(text), *box, unit, labels, image));
     texts += fmt::format("<text class=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>",
                          kind,

@@ -15,7 +15,9 @@ namespace stillmap {
 namespace {
 
 std::size_t count_of(const ReportSample& sample, const VerdictStyle* style) {
-  const auto has_style = [style](const FeatureMark& feature) { return &style_of(feature) == style; };
+  const auto has_style = [style](const FeatureMark& feature) {
+    return &style_of(feature) == style;
+  };
   return static_cast<std::size_t>(std::ranges::count_if(sample.second.features, has_style));
 }
 
