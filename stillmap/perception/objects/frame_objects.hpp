@@ -46,11 +46,4 @@ struct FrameObjects {
   ObjectMask mask;                     ///< ids as in `objects`; empty where no object has pixels
 };
 
-/// The input of object tracking for one frame.
-struct ObservedFrame {
-  FrameId id;
-  FrameDetections detections;
-  DepthImage depth;  ///< as large as the mask
-};
-
 }  // namespace stillmap

@@ -16,7 +16,8 @@ namespace {
 constexpr std::size_t kMostObjects = 255;  // the number of ids of a mask
 
 /// The objects of a frame with their tracks, numbered by their position, and a copy of the mask.
-FrameObjects detected_objects(const ObservedFrame& frame, const std::vector<TrackId>& tracks) {
+FrameObjects detected_objects(const ObjectTracker::Observation& frame,
+                              const std::vector<TrackId>& tracks) {
   FrameObjects result{frame.id, frame.detections.stamp, {}, {}};
   std::array<std::uint8_t, 256> place{};
   for (const DetectedObject& object : frame.detections.objects) {
@@ -84,7 +85,7 @@ void ObjectTracker::see(Track& track, const DetectedObject& object, double stamp
   ++track.sightings;
 }
 
-std::vector<TrackId> ObjectTracker::associate(const ObservedFrame& frame) {
+std::vector<TrackId> ObjectTracker::associate(const Observation& frame) {
   struct Pair {
     double iou;
     std::size_t track, object;
@@ -122,7 +123,7 @@ std::vector<TrackId> ObjectTracker::associate(const ObservedFrame& frame) {
   return found;
 }
 
-std::optional<FrameObjects> ObjectTracker::push(ObservedFrame frame) {
+std::optional<FrameObjects> ObjectTracker::push(Observation frame) {
   STILLMAP_CHECK(held_.empty() ||
                  held_.back().frame.detections.stamp.seconds < frame.detections.stamp.seconds);
   STILLMAP_CHECK(frame.detections.mask.mat.empty() ||
@@ -210,7 +211,7 @@ bool ObjectTracker::is_duplicate(const Track& track, const Fill& fill, const Hel
 }
 
 PropagatedMask ObjectTracker::carried_mask(const Fill& fill, const Held& held) const {
-  const ObservedFrame& source = fill.nearest.held->frame;
+  const Observation& source = fill.nearest.held->frame;
   const DetectedObject& object = source.detections.objects[fill.nearest.object];
   const ObjectView view{source.depth, source.detections.mask, object.id, object.box};
   const MaskArea& area = (*fill.nearest.held->areas)[static_cast<std::size_t>(object.id)];

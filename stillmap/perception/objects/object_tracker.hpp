@@ -69,11 +69,18 @@ enum class FillRule : std::uint8_t {
 /// frame is returned `search_frames` frames after it was pushed, with kCausal at once.
 class ObjectTracker {
  public:
+  /// The input of object tracking for one frame.
+  struct Observation {
+    FrameId id;
+    FrameDetections detections;
+    DepthImage depth;  ///< as large as the mask
+  };
+
   ObjectTracker(const ObjectTrackerConfig& config, FillRule rule);
 
   /// Takes the next frame, with a later stamp, and returns the frame that is complete now, if any.
   /// Images are kept as long as needed, without copying.
-  [[nodiscard]] std::optional<FrameObjects> push(ObservedFrame frame);
+  [[nodiscard]] std::optional<FrameObjects> push(Observation frame);
 
   /// Ends the stream: returns the remaining frames in order. Nothing may be pushed afterwards.
   [[nodiscard]] std::vector<FrameObjects> flush();
@@ -95,7 +102,7 @@ class ObjectTracker {
     int sightings = 0;
   };
   struct Held {
-    ObservedFrame frame;
+    Observation frame;
     std::size_t position = 0;     // in the stream
     std::vector<TrackId> tracks;  // of frame.detections.objects
     std::shared_ptr<const MaskAreas> areas;
@@ -113,7 +120,7 @@ class ObjectTracker {
   };
 
   [[nodiscard]] static PixelBox predicted_box(const Track& track, double stamp_s);
-  [[nodiscard]] std::vector<TrackId> associate(const ObservedFrame& frame);
+  [[nodiscard]] std::vector<TrackId> associate(const Observation& frame);
   void see(Track& track, const DetectedObject& object, double stamp_s) const;
   [[nodiscard]] FrameObjects leave(const Held& held) const;
   [[nodiscard]] bool is_real(const Track& track, const Held& held) const;

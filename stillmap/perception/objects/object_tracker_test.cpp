@@ -23,6 +23,8 @@ DepthImage flat_depth(float metres) {
   return DepthImage(cv::Mat1f(kHeight, kWidth, metres));
 }
 
+using ObservedFrame = ObjectTracker::Observation;
+
 struct Seen {
   std::string class_name;
   PixelBox box;
