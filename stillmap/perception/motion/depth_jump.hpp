@@ -37,19 +37,27 @@ struct DepthJumpConfig {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("enabled", self.enabled, FieldInfo{"remove what suddenly has another depth"});
+    visit("enabled", self.enabled, FieldInfo{"whether depth jumps are removed"});
     visit("jump_m",
           self.jump_m,
-          FieldInfo{"change of depth against the warped frame before, besides noise", "m", 0, 100});
+          FieldInfo{"full: difference from the warped earlier depth that makes a jump, in addition "
+                    "to noise",
+                    "m",
+                    0,
+                    100});
     visit("jump_per_m",
           self.jump_per_m,
-          FieldInfo{"growth of that change with depth squared", "1/m", 0, 10});
+          FieldInfo{"full: growth of jump_m with depth squared", "1/m", 0, 10});
     visit("revealed",
           self.revealed,
-          FieldInfo{"also remove what came into view behind something that left"});
+          FieldInfo{"full: whether background revealed by a departing object is removed, too"});
     visit("paper_jump_m",
           self.paper_jump_m,
-          FieldInfo{"paper: change of depth at a pixel (tau2 of Fan 2020)", "m", 0, 100});
+          FieldInfo{"paper: difference from the previous frame at the same pixel that makes a jump "
+                    "(tau2 of Fan 2020)",
+                    "m",
+                    0,
+                    100});
   }
 };
 

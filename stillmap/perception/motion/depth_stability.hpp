@@ -27,17 +27,23 @@ struct DepthStabilityConfig {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("enabled", self.enabled, FieldInfo{"judge how steady the depth round a feature is"});
+    visit("enabled",
+          self.enabled,
+          FieldInfo{"whether features are judged by the stability of the depth around them"});
     visit("mad_factor",
           self.mad_factor,
-          FieldInfo{"a spread farther from the median, in scaled MADs, is unstable", "", 0.1, 100});
+          FieldInfo{
+              "distance from the median spread, in scaled MADs, beyond which a feature is unstable",
+              "",
+              0.1,
+              100});
     visit("relative",
           self.relative,
-          FieldInfo{"full: compare spreads in terms of noise, which grows with depth squared"});
+          FieldInfo{"full: whether spreads are divided by the noise of their depth"});
     visit("rejected",
           self.rejected,
-          FieldInfo{"full: what becomes of features of unstable depth; paper drops them, and those "
-                    "of missing depth",
+          FieldInfo{"full: treatment of a feature of unstable depth; paper drops it, and one of "
+                    "missing depth",
                     "",
                     0,
                     0,

@@ -26,7 +26,9 @@ struct InteractionConfig {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("enabled", self.enabled, FieldInfo{"what a person is at is taken as dynamic"});
+    visit("enabled",
+          self.enabled,
+          FieldInfo{"whether an object that a person interacts with is dynamic"});
   }
 };
 
@@ -93,8 +95,8 @@ class DynamicObjects {
   [[nodiscard]] MeasuredObjects measure(const DepthImage& depth, const FrameObjects& objects) const;
 
   /// `measured` is the result of measure() for the same frame. `previous` are earlier frames, the
-  /// best first; without any, no pixel has jumped. JumpRule::kPreviousFrame needs one, and no motion
-  /// of it. `moving` are the tracks known to move: dynamic where the mode judges by motion.
+  /// best first; without any, no pixel has jumped. JumpRule::kPreviousFrame needs one, and no
+  /// motion of it. `moving` are the tracks known to move: dynamic where the mode judges by motion.
   [[nodiscard]] DynamicsResult judge(const DepthImage& depth,
                                      const FrameObjects& objects,
                                      const MeasuredObjects& measured,
@@ -118,10 +120,10 @@ class DynamicObjects {
   [[nodiscard]] ObjectState state_by_class(const TrackedObject& object,
                                            const ObjectDepths& depths) const;
   [[nodiscard]] ObjectMask extended_mask(const DepthImage& depth,
-                                        const FrameObjects& objects,
-                                        const MeasuredObjects& measured,
-                                        const std::vector<ObjectState>& states,
-                                        const HalfDepth& known_static) const;
+                                         const FrameObjects& objects,
+                                         const MeasuredObjects& measured,
+                                         const std::vector<ObjectState>& states,
+                                         const HalfDepth& known_static) const;
   [[nodiscard]] JumpImage jumps(const DepthImage& depth,
                                 std::span<const PreviousDepth> previous,
                                 const HalfDepth& expected) const;

@@ -33,19 +33,27 @@ struct DynamicsConfig {
   static void fields(Self& self, Visitor& visit) {
     visit("mode",
           self.mode,
-          FieldInfo{"treatment of what moves", "", 0, 0, dynamics_mode_names()});
+          common_setting(
+              FieldInfo{"treatment of motion; docs/algorithm.md has the stages of each mode",
+                        "",
+                        0,
+                        0,
+                        dynamics_mode_names()}));
     visit("feature_margin_px",
           self.feature_margin_px,
-          FieldInfo{"features this near to what moves are not used", "px", 0, 50});
+          common_setting(
+              FieldInfo{"distance that features keep from the pixels that move", "px", 0, 50}));
     visit("compare_frames",
           self.compare_frames,
-          FieldInfo{"full: age of the depth that a frame is compared with; also twice and 4 times",
-                    "frames",
-                    1,
-                    60});
+          common_setting(FieldInfo{"full: age of the depth that a frame is compared with; twice "
+                                   "and four times that age, too",
+                                   "frames",
+                                   1,
+                                   60}));
     visit("fill_boxes",
           self.fill_boxes,
-          FieldInfo{"take over what a network has missed from the frames before and after"});
+          FieldInfo{"whether an object that the network misses is filled in from the frames before "
+                    "and after"});
     DynamicObjectsConfig::fields(self.objects, visit);
     visit.group("tracker", self.tracker);
     visit.group("motion", self.motion);

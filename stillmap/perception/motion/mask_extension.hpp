@@ -29,55 +29,86 @@ struct MaskExtensionConfig {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("enabled", self.enabled, FieldInfo{"extend the masks of what moves"});
+    visit("enabled",
+          self.enabled,
+          FieldInfo{"whether the masks of dynamic objects are extended by depth"});
     visit("variant",
           self.variant,
-          FieldInfo{"how masks are extended: Fan 2020, or what hangs together in depth",
+          FieldInfo{"rule of extension. paper: Fan 2020, Alg. 1; connected: pixels connected to "
+                    "the mask in depth",
                     "",
                     0,
                     0,
                     {"paper", "connected"}});
     visit("mad_factor",
           self.mad_factor,
-          FieldInfo{"depths farther from the median, in scaled MADs, are outliers", "", 0.1, 100});
+          FieldInfo{"distance from the median, in scaled MADs, beyond which a depth of the mask is "
+                    "an outlier",
+                    "",
+                    0.1,
+                    100});
     visit("whole_box_px",
           self.whole_box_px,
-          FieldInfo{"paper: a smaller mask gives way to its box", "pixels at 640x480", 0, 307200});
+          FieldInfo{"paper: area below which a mask is replaced by its box (tau1 of Fan 2020)",
+                    "pixels at 640x480",
+                    0,
+                    307200});
     visit("reach_m",
           self.reach_m,
-          FieldInfo{"connected: depths this close to the median are no outliers", "m", 0, 10});
+          FieldInfo{"connected: distance from the median within which a depth is never an outlier",
+                    "m",
+                    0,
+                    10});
     visit("interval_margin_m",
           self.interval_margin_m,
-          FieldInfo{"connected: how far beyond the mask's depths to extend", "m", 0, 10});
-    visit("box_margin",
-          self.box_margin,
-          FieldInfo{"connected: how far beyond the box, as a share of its size", "", 0, 2});
-    visit("step_m",
-          self.step_m,
-          FieldInfo{"connected: depth step between neighbours, besides noise", "m", 0, 1});
+          FieldInfo{"connected: widening of the interval of the object's depths, at both ends",
+                    "m",
+                    0,
+                    10});
+    visit(
+        "box_margin",
+        self.box_margin,
+        FieldInfo{"connected: widening of the box on each side, as a share of its size", "", 0, 2});
+    visit(
+        "step_m",
+        self.step_m,
+        FieldInfo{
+            "connected: depth step between connected neighbours, in addition to noise", "m", 0, 1});
     visit("step_per_m",
           self.step_per_m,
-          FieldInfo{"connected: growth of that step with depth squared", "1/m", 0, 1});
+          FieldInfo{"connected: growth of step_m with depth squared", "1/m", 0, 1});
     visit("grow_px",
           self.grow_px,
-          FieldInfo{"connected: longest way from the mask", "pixels at 640x480", 0, 1000});
+          FieldInfo{"connected: greatest distance of an added pixel from the mask",
+                    "pixels at 640x480",
+                    0,
+                    1000});
     visit("min_mask_share",
           self.min_mask_share,
-          FieldInfo{"connected: what is less mask than this is not extended", "", 0, 1});
+          FieldInfo{"connected: share of mask pixels below which a connected part adds no pixels",
+                    "",
+                    0,
+                    1});
     visit("large_part",
           self.large_part,
           FieldInfo{
-              "connected: a larger part of the mask belongs to the object at any depth", "", 0, 1});
+              "connected: share of the mask above which a part belongs to the object at any depth",
+              "",
+              0,
+              1});
     visit("static_m",
           self.static_m,
-          FieldInfo{
-              "connected: this close to what is known to stand still does not join", "m", 0, 1});
+          FieldInfo{"connected: distance from known static depth within which a pixel is not added",
+                    "m",
+                    0,
+                    1});
     visit("static_per_m",
           self.static_per_m,
-          FieldInfo{"connected: growth of that distance with depth squared", "1/m", 0, 1});
+          FieldInfo{"connected: growth of static_m with depth squared", "1/m", 0, 1});
     visit("drop_outliers",
           self.drop_outliers,
-          FieldInfo{"connected: mask pixels apart from the object in depth leave it"});
+          FieldInfo{"connected: whether mask pixels outside the object's depths are removed from "
+                    "the mask"});
   }
 };
 
@@ -93,8 +124,8 @@ struct MaskExtensionConfig {
 /// are mostly something else keep their mask alone. Holes without depth inside are filled. Depth is
 /// looked at in every second row and column. A mask without any depth is kept as it is.
 ///
-/// `known_static`, if not empty, has the depth of what is known to stand still: pixels of that depth
-/// do not join (`connected`).
+/// `known_static`, if not empty, has the depth of what is known to stand still: pixels of that
+/// depth do not join (`connected`).
 ///
 /// `area` is that of the object's id in `object.mask`, of which `object.depth` has the size.
 /// The patch may be empty.

@@ -12,8 +12,8 @@
 
 #include "stillmap/core/fields.hpp"
 #include "stillmap/geometry/camera.hpp"
-#include "stillmap/perception/objects/object_state.hpp"
 #include "stillmap/perception/objects/frame_objects.hpp"
+#include "stillmap/perception/objects/object_state.hpp"
 
 namespace stillmap {
 
@@ -33,34 +33,40 @@ struct MotionStateConfig {
   static void fields(Self& self, Visitor& visit) {
     visit("window_frames",
           self.window_frames,
-          FieldInfo{"positions of an object that its velocity comes from", "frames", 3, 100});
+          FieldInfo{"greatest number of positions for an object's velocity", "frames", 3, 100});
     visit("min_frames",
           self.min_frames,
-          FieldInfo{"positions that it takes at least", "frames", 3, 100});
-    visit("moving_m_s",
-          self.moving_m_s,
-          FieldInfo{"a still object that is faster, beyond the error, moves", "m/s", 0, 10});
+          FieldInfo{"least number of positions for an object's velocity", "frames", 3, 100});
+    visit(
+        "moving_m_s",
+        self.moving_m_s,
+        FieldInfo{"speed, beyond its error, at which a still object becomes moving", "m/s", 0, 10});
     visit("still_m_s",
           self.still_m_s,
-          FieldInfo{"a moving object that is slower for some frames is still", "m/s", 0, 10});
+          FieldInfo{
+              "speed below which a moving object becomes still after calm_frames", "m/s", 0, 10});
     visit("certainty",
           self.certainty,
-          FieldInfo{"standard errors of the velocity that count as its error", "", 0, 100});
+          FieldInfo{"error of a velocity, in standard errors", "", 0, 100});
     visit("depth_noise_per_m",
           self.depth_noise_per_m,
-          FieldInfo{"least error of a position, growing with depth squared", "1/m", 0, 1});
-    visit("border_factor",
-          self.border_factor,
-          FieldInfo{"how much faster it must be where the image cuts it off", "", 1, 100});
-    visit("calm_frames",
-          self.calm_frames,
-          FieldInfo{"frames that it takes to be still again", "frames", 1, 1000});
-    visit("vacated_share",
-          self.vacated_share,
-          FieldInfo{"what moves must have left this much of where it was", "", 0, 1});
-    visit("vacated_m",
-          self.vacated_m,
-          FieldInfo{"change of depth that shows it left, besides noise", "m", 0, 10});
+          FieldInfo{"least standard deviation of a position, per depth squared", "1/m", 0, 1});
+    visit(
+        "border_factor",
+        self.border_factor,
+        FieldInfo{"factor on moving_m_s for an object cut off by the image's border", "", 1, 100});
+    visit(
+        "calm_frames",
+        self.calm_frames,
+        FieldInfo{"number of slow frames after which a moving object is still", "frames", 1, 1000});
+    visit(
+        "vacated_share",
+        self.vacated_share,
+        FieldInfo{"share of its earlier pixels that a moving object must have vacated", "", 0, 1});
+    visit(
+        "vacated_m",
+        self.vacated_m,
+        FieldInfo{"change of depth that shows a pixel vacated, in addition to noise", "m", 0, 10});
   }
 };
 
@@ -91,9 +97,9 @@ class MotionEstimator {
   /// in which an object was detected itself come in the order of their stamps. `T_world_camera` is
   /// in a frame that never jumps: the odometry frame.
   [[nodiscard]] std::vector<Motion> update(const FrameObjects& objects,
-                                                 const DepthImage& depth,
-                                                 std::span<const ObjectState> states,
-                                                 const Eigen::Isometry3d& T_world_camera);
+                                           const DepthImage& depth,
+                                           std::span<const ObjectState> states,
+                                           const Eigen::Isometry3d& T_world_camera);
 
   /// The tracks that move as of the last frame, in the order of their numbers.
   [[nodiscard]] std::vector<TrackId> moving() const;
