@@ -51,10 +51,11 @@ struct DepthStabilityConfig {
   }
 };
 
-/// Fan 2020, section III-E: how steady the depth round each feature is. Of the 3x3 pixels round it
-/// the standard deviation is taken; a feature is unstable whose deviation is more than `mad_factor`
-/// scaled MADs from the median of all features with depth. With `relative`, deviations are divided
-/// by depth squared before. `raw_px` are where the image has the features; a result for each.
+/// The stability of the depth around each feature (Fan 2020, section III-E, Eq. (14)). A feature is
+/// unstable if the standard deviation of the depths of its 3x3 block is more than `mad_factor`
+/// scaled MADs from the median of all features with depth. With `relative`, deviations are first
+/// divided by depth squared. `raw_px` are the raw pixels of the features; there is one result for
+/// each.
 [[nodiscard]] std::vector<DepthStability> judge_depth_stability(
     const DepthImage& depth,
     std::span<const Eigen::Vector2f> raw_px,

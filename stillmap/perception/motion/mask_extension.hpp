@@ -112,33 +112,34 @@ struct MaskExtensionConfig {
   }
 };
 
-/// Where the object of a mask is, more fully than the mask says: Fan 2020, Alg. 1, Eqs. (2)-(5).
+/// The extended mask of an object (Fan 2020, section III-A, Alg. 1, Eqs. (2)-(5)).
 ///
-/// `paper`: the mask, and the pixels of the box whose depth lies strictly between the least and the
-/// greatest of the mask's own, outliers removed; the whole box as well where the mask has fewer
-/// than `whole_box_px`.
+/// `paper`: the mask, and the pixels of the box whose depth is strictly between the least and the
+/// greatest depth of the mask without outliers; the whole box if the mask has fewer than
+/// `whole_box_px` pixels.
 ///
-/// `connected`: a chair or a wall at a limb's depth does not join. Starting from the mask's pixels
-/// without outliers, neighbours join as long as the depth steps between them are small, they are in
-/// the interval of the object's depths or in the mask, and not far from mask and box. Parts that
-/// are mostly something else keep their mask alone. Holes without depth inside are filled. Depth is
-/// looked at in every second row and column. A mask without any depth is kept as it is.
+/// `connected`: a chair or a wall at the depth of a limb does not join. Starting from the mask
+/// pixels without outliers, neighbours join while the depth steps between them are small, their
+/// depth is in the interval of the object's depths or they are in the mask, and they are near mask
+/// and box. Parts with too small a share of mask pixels keep only these. Holes without depth inside
+/// are filled. Depth is sampled in every second row and column. A mask without any depth stays
+/// unchanged.
 ///
-/// `known_static`, if not empty, has the depth of what is known to stand still: pixels of that
-/// depth do not join (`connected`).
+/// `known_static`, if not empty, is the depth of known static surface: pixels of that depth do not
+/// join (`connected`).
 ///
-/// `area` is that of the object's id in `object.mask`, of which `object.depth` has the size.
-/// The patch may be empty.
+/// `area` is the area of the object's id in `object.mask`, which has the size of `object.depth`.
+/// The result may be empty.
 [[nodiscard]] PixelPatch extend_mask(const ObjectView& object,
                                      const MaskArea& area,
                                      const ObjectDepths& depths,
                                      const MaskExtensionConfig& config,
                                      const HalfDepth& known_static = {});
 
-/// The mask of an object as it is.
+/// The mask of an object without extension.
 [[nodiscard]] PixelPatch mask_patch(const ObjectView& object, const MaskArea& area);
 
-/// The outliers that the variant of `config` wants removed from the depths.
+/// The rule for depth outliers of the variant of `config`.
 [[nodiscard]] OutlierRule outlier_rule(const MaskExtensionConfig& config);
 
 }  // namespace stillmap

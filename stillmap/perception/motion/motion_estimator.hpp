@@ -70,8 +70,8 @@ struct MotionStateConfig {
   }
 };
 
-/// The slope of positions over time that is the median of those between two of them, for each axis,
-/// and its standard error.
+/// The median of the slopes between all pairs of positions over time (Theil-Sen), for each axis,
+/// with its standard error.
 struct RobustVelocity {
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
   double error = 0;
@@ -80,28 +80,28 @@ struct RobustVelocity {
                                              std::span<const Eigen::Vector3d> positions,
                                              double least_noise_m);
 
-/// Follows the middle of each tracked object in the world, and says which of them move.
+/// Estimates the motion of each tracked object from the positions of its middle.
 ///
-/// An object's middle is the median column and row of its pixels at the median of their depths. Its
-/// velocity is the median slope over the last frames (Theil-Sen), with an error from the scatter
-/// about it, but no less than depth noise makes; so the farther an object, or the more its mask
-/// flickers, the faster it must be to count as moving. And it must have left some of where it was:
-/// a part of its surface of some frames ago, where one now sees farther or an other part of it. So
-/// what is covered up, or cut off by the image, bit by bit does not seem to move. Boxes that were
-/// filled in are no evidence.
+/// The middle of an object is the median column and row of its pixels at the median of their
+/// depths. Its velocity is the median slope over the last frames (Theil-Sen), with an error from
+/// the scatter around it, at least that of depth noise. A far object, or one with a flickering
+/// mask, must therefore be faster to count as moving. It must also have vacated a part of its
+/// surface of some frames ago: the camera now sees farther there, or another part of the object. An
+/// object that is gradually covered, or cut off by the border of the image, does not count as
+/// moving. Filled boxes are no evidence.
 class MotionEstimator {
  public:
   MotionEstimator(const MotionStateConfig& config, const CameraModel& camera);
 
-  /// Takes a frame with the states of its objects; gives the motion of each in their order. Frames
-  /// in which an object was detected itself come in the order of their stamps. `T_world_camera` is
-  /// in a frame that never jumps: the odometry frame.
+  /// Adds a frame with the states of its objects and returns the motion of each, in their order.
+  /// Frames with detected (not only filled) objects must be in the order of their stamps.
+  /// `T_world_camera` is in a coordinate frame that never jumps: the odometry frame.
   [[nodiscard]] std::vector<Motion> update(const FrameObjects& objects,
                                            const DepthImage& depth,
                                            std::span<const ObjectState> states,
                                            const Eigen::Isometry3d& T_world_camera);
 
-  /// The tracks that move as of the last frame, in the order of their numbers.
+  /// The tracks that move in the last frame, by number.
   [[nodiscard]] std::vector<TrackId> moving() const;
 
  private:
@@ -109,7 +109,7 @@ class MotionEstimator {
     double stamp_s = 0;
     Eigen::Vector3d p_world;
     double noise_m = 0;
-    std::vector<Eigen::Vector3d> surface;  // some of what was seen of it, in the world
+    std::vector<Eigen::Vector3d> surface;  // a sample of its visible surface, in the world frame
   };
   struct View {
     const FrameObjects& objects;
@@ -121,7 +121,7 @@ class MotionEstimator {
     std::deque<Position> positions;
     RobustVelocity velocity;
     bool moving = false, known = false;
-    int calm = 0;  // frames in a row in which it was slow
+    int calm = 0;  // number of consecutive slow frames
     double last_seen_s = 0;
   };
 
