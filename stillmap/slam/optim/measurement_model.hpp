@@ -31,7 +31,7 @@ struct MeasurementConfig {
   }
 };
 
-/// What a feature measures, and how well.
+/// The measurement of a feature with its standard deviations.
 class MeasurementModel {
  public:
   MeasurementModel(const MeasurementConfig& config, std::vector<float> level_scales)
@@ -41,7 +41,7 @@ class MeasurementModel {
     return features.depth_m[i] > 0 && features.depth_m[i] <= config_.max_depth_m;
   }
 
-  /// A corner of a coarser level is known that much less well.
+  /// The standard deviation of a pixel position is proportional to the pixel size of the level.
   [[nodiscard]] PointMeasurement operator()(const Features& features, std::size_t i) const {
     PointMeasurement m;
     m.px = features.px[i].cast<double>();
