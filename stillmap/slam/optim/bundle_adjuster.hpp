@@ -17,10 +17,10 @@ struct BundleConfig {
   static void fields(Self& self, Visitor& visit) {
     visit("robust_iterations",
           self.robust_iterations,
-          FieldInfo{"iterations with outliers in, before they are set aside", "", 0, 100});
+          FieldInfo{"number of iterations with outliers, under a robust loss", "", 0, 100});
     visit("final_iterations",
           self.final_iterations,
-          FieldInfo{"iterations over the inliers", "", 0, 100});
+          FieldInfo{"number of iterations without outliers", "", 0, 100});
   }
 };
 

@@ -32,7 +32,7 @@ struct PoseGraphConfig {
   static void fields(Self& self, Visitor& visit) {
     visit("iterations",
           self.iterations,
-          FieldInfo{"of the adjustment of all key frames to a loop, at most", "", 1, 1000});
+          FieldInfo{"greatest number of iterations of the pose graph", "", 1, 1000});
   }
 };
 
@@ -45,8 +45,9 @@ struct PoseGraphResult {
 };
 
 /// The poses that fit all edges best: least squares over SE(3) by Levenberg-Marquardt (Ceres), on
-/// one thread and without time limits, so that equal input gives equal bits. Poses without edges
-/// stay unchanged. Throws Error when a number in the graph is not finite.
+/// one thread and without time limits, so that equal input gives equal bits. A connected
+/// component without a held pose stays unchanged if its edges already fit. Throws Error when a
+/// number in the graph is not finite.
 [[nodiscard]] PoseGraphResult optimize_pose_graph(const PoseGraph& graph,
                                                   const PoseGraphConfig& config);
 
