@@ -31,34 +31,49 @@ struct StaticMatchesConfig {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("enabled", self.enabled, FieldInfo{"judge matches in the boxes of what moves"});
-    visit("in_full", self.in_full, FieldInfo{"full: judge them as well"});
+    visit("enabled",
+          self.enabled,
+          FieldInfo{
+              "whether features in the boxes of dynamic objects are judged by epipolar geometry"});
+    visit("in_full", self.in_full, FieldInfo{"whether mode full judges them, too"});
+    visit("epipolar_px",
+          self.epipolar_px,
+          FieldInfo{"distance from the epipolar line above which a match moves (tau5 of Fan 2020)",
+                    "px",
+                    0,
+                    50});
     visit(
-        "epipolar_px",
-        self.epipolar_px,
-        FieldInfo{"a match farther from its epipolar line moves (tau5 of Fan 2020)", "px", 0, 50});
-    visit("reprojection_px",
-          self.reprojection_px,
-          FieldInfo{"a match farther from where it would stand still moves", "px", 0, 50});
+        "reprojection_px",
+        self.reprojection_px,
+        FieldInfo{"distance from its static reprojection above which a match moves", "px", 0, 50});
     visit("depth_m",
           self.depth_m,
-          FieldInfo{"a match nearer or farther by more than that moves", "m", 0, 10});
+          FieldInfo{"difference from its static depth above which a match moves", "m", 0, 10});
     visit("depth_per_m",
           self.depth_per_m,
-          FieldInfo{"growth of that distance with depth squared", "1/m", 0, 10});
+          FieldInfo{"growth of depth_m with depth squared", "1/m", 0, 10});
     visit("min_environment",
           self.min_environment,
-          FieldInfo{"matches outside of boxes that tell the camera's motion", "", 8, 10000});
+          FieldInfo{"number of matches in the environment region needed for the camera's motion",
+                    "",
+                    8,
+                    10000});
     visit("min_parallax_px",
           self.min_parallax_px,
-          FieldInfo{"less of it than that is a camera that only turns", "px", 0, 50});
-    visit("iterations", self.iterations, FieldInfo{"of RANSAC, at most", "", 1, 100000});
+          FieldInfo{"parallax below which the camera only rotates and has no fundamental matrix",
+                    "px",
+                    0,
+                    50});
+    visit("iterations",
+          self.iterations,
+          FieldInfo{"greatest number of RANSAC iterations", "", 1, 100000});
     visit("search_px",
           self.search_px,
-          FieldInfo{"how far a feature may be from where it would stand still", "px", 1, 200});
+          FieldInfo{"search radius for a match around its static reprojection", "px", 1, 200});
     visit("inlier_px",
           self.inlier_px,
-          FieldInfo{"a match of the environment nearer to its epipolar line agrees with it",
+          FieldInfo{"distance from the epipolar line within which a match of the environment "
+                    "region is an inlier",
                     "px",
                     0.01,
                     50});

@@ -35,15 +35,14 @@ struct MatchRules {
   static void fields(Self& self, Visitor& visit) {
     visit("max_distance",
           self.max_distance,
-          FieldInfo{
-              "differing bits of the 256 of two descriptors that match, at most", "bits", 0, 256});
+          FieldInfo{"greatest Hamming distance of the descriptors of a match", "bits", 0, 256});
     visit("max_ratio",
           self.max_ratio,
-          FieldInfo{"distance of the best match to that of the second best on the same pyramid "
-                    "level, at most; 1 accepts any",
-                    "",
-                    0,
-                    1});
+          FieldInfo{
+              "greatest ratio of best to second best distance on one pyramid level; 1 accepts any",
+              "",
+              0,
+              1});
   }
 };
 

@@ -26,30 +26,34 @@ struct LoopConfig {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("enabled", self.enabled, FieldInfo{"whether places seen before close loops"});
+    visit("enabled",
+          self.enabled,
+          common_setting(FieldInfo{"whether loops are detected and closed"}));
     visit("candidates",
           self.candidates,
-          FieldInfo{"key frames that look most like the newest, which are asked", "", 1, 100});
-    visit(
-        "inverse_depth_sigma",
-        self.inverse_depth_sigma,
-        FieldInfo{
-            "error of the inverse depth where loops are judged and the submap is adjusted to them",
-            "1/m",
-            1e-4,
-            1});
-    visit("max_edge_chi2",
-          self.max_edge_chi2,
-          FieldInfo{"a loop that all others contradict by more is not closed (squared error in "
-                    "sigmas)",
+          FieldInfo{"number of key frames from the place index that are examined per key frame",
                     "",
                     1,
-                    1e9});
+                    100});
+    visit("inverse_depth_sigma",
+          self.inverse_depth_sigma,
+          FieldInfo{"measurement.inverse_depth_sigma for loop verification and global adjustment",
+                    "1/m",
+                    1e-4,
+                    1});
+    visit(
+        "max_edge_chi2",
+        self.max_edge_chi2,
+        FieldInfo{
+            "squared error, in sigmas, above which a loop contradicts the others and is not closed",
+            "",
+            1,
+            1e9});
     LandmarkFusionConfig::fields(self.fusion, visit);
     visit("adjustment_lag_frames",
           self.adjustment_lag_frames,
-          FieldInfo{"the adjustment of the whole map to a loop reaches it so many frames later, or "
-                    "as soon then as no mapping is under way",
+          FieldInfo{"number of frames after which a global adjustment is applied, or later while "
+                    "mapping is under way",
                     "frames",
                     0,
                     100000});

@@ -27,22 +27,29 @@ struct LoopVerifierConfig {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("iterations", self.iterations, FieldInfo{"of RANSAC, at most", "", 1, 100000});
+    visit("iterations",
+          self.iterations,
+          FieldInfo{"greatest number of RANSAC iterations", "", 1, 100000});
     visit("min_matches",
           self.min_matches,
-          FieldInfo{"by appearance that have one rigid motion in common", "", 4, 10000});
-    visit("min_inliers", self.min_inliers, FieldInfo{"that prove a loop", "", 4, 10000});
+          FieldInfo{
+              "number of matches by appearance that must agree on one rigid motion", "", 4, 10000});
+    visit("min_inliers",
+          self.min_inliers,
+          FieldInfo{"number of matches that confirm a loop", "", 4, 10000});
     visit("min_share",
           self.min_share,
-          FieldInfo{"of what one image should see of the other's points, found there", "", 0, 1});
+          FieldInfo{"share of the other image's visible points that must be matched", "", 0, 1});
     visit("max_sigma_m",
           self.max_sigma_m,
-          FieldInfo{"error of the position that the matches leave, at most", "m", 0, 10});
+          FieldInfo{"greatest standard deviation of the relative position", "m", 0, 10});
     visit(
         "search_radius_px",
         self.search_radius_px,
-        FieldInfo{
-            "search for more matches once a motion is found, on the finest level", "px", 0.5, 100});
+        FieldInfo{"search radius for further matches from the motion, at the finest pyramid level",
+                  "px",
+                  0.5,
+                  100});
     visit.group("appearance_match", self.appearance_match);
     visit.group("search_match", self.search_match);
   }

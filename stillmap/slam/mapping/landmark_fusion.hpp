@@ -16,17 +16,17 @@ struct LandmarkFusionConfig {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("fusion_radius_px",
-          self.radius_px,
-          FieldInfo{"search for a landmark in another key frame that should see it, on the finest "
-                    "level",
-                    "px",
-                    0.5,
-                    50});
+    visit(
+        "fusion_radius_px",
+        self.radius_px,
+        FieldInfo{"search radius for a landmark in another key frame, at the finest pyramid level",
+                  "px",
+                  0.5,
+                  50});
     visit("fusion_max_distance",
           self.max_distance,
-          FieldInfo{"differing bits of the 256 of the descriptors of a landmark and a feature that "
-                    "are fused, at most",
+          FieldInfo{"greatest Hamming distance of the descriptors of a landmark and a feature that "
+                    "are fused",
                     "bits",
                     0,
                     256});

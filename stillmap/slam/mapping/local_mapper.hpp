@@ -22,16 +22,18 @@ struct MappingConfig {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("lag_frames",
-          self.lag_frames,
-          FieldInfo{"a key frame's mapping reaches the map that many frames after it; at most "
-                    "keyframe.min_gap_frames",
-                    "frames",
-                    0,
-                    1000});
+    visit(
+        "lag_frames",
+        self.lag_frames,
+        common_setting(FieldInfo{
+            "number of frames after which a map update is applied; at most keyframe.min_gap_frames",
+            "frames",
+            0,
+            1000}));
     visit("window_keyframes",
           self.window_keyframes,
-          FieldInfo{"key frames that local bundle adjustment moves", "", 2, 200});
+          common_setting(
+              FieldInfo{"number of key frames that local bundle adjustment moves", "", 2, 200}));
     LandmarkFusionConfig::fields(self.fusion, visit);
     visit.group("creation", self.creation);
     visit.group("culling", self.culling);

@@ -31,28 +31,38 @@ struct RelocalizerConfig {
   static void fields(Self& self, Visitor& visit) {
     visit("candidates",
           self.candidates,
-          FieldInfo{"key frames tried in a frame while lost", "", 1, 1000});
-    visit("iterations", self.iterations, FieldInfo{"of RANSAC, per key frame", "", 1, 100000});
+          FieldInfo{"number of key frames tried per frame while lost", "", 1, 1000});
+    visit("iterations",
+          self.iterations,
+          FieldInfo{"greatest number of RANSAC iterations per key frame", "", 1, 100000});
     visit("min_matches",
           self.min_matches,
-          FieldInfo{"by appearance that have one pose in common", "", 4, 1000});
-    visit("search_radius_px",
-          self.search_radius_px,
-          FieldInfo{"search for more landmarks from there, on the finest level", "px", 1, 100});
-    visit("local_keyframes",
-          self.local_keyframes,
-          FieldInfo{"key frames whose landmarks are searched then", "", 1, 1000});
-    visit("min_inliers", self.min_inliers, FieldInfo{"that prove a place", "", 4, 1000});
+          FieldInfo{"number of matches by appearance that must agree on one pose", "", 4, 1000});
+    visit(
+        "search_radius_px",
+        self.search_radius_px,
+        FieldInfo{"search radius for further landmarks from that pose, at the finest pyramid level",
+                  "px",
+                  1,
+                  100});
+    visit(
+        "local_keyframes",
+        self.local_keyframes,
+        FieldInfo{"number of key frames whose landmarks are searched from that pose", "", 1, 1000});
+    visit("min_inliers",
+          self.min_inliers,
+          FieldInfo{"number of landmarks that must be found", "", 4, 1000});
     visit("min_share",
           self.min_share,
-          FieldInfo{"of the landmarks that tracking would find there, found", "", 0, 2});
-    visit("new_world_after_frames",
-          self.new_world_after_frames,
-          FieldInfo{"lost for so long, the camera begins a new map, which joins the others when a "
-                    "place is recognised",
-                    "frames",
-                    1,
-                    1000000000});
+          FieldInfo{"share of the landmarks expected at the pose that must be found", "", 0, 2});
+    visit(
+        "new_world_after_frames",
+        self.new_world_after_frames,
+        common_setting(FieldInfo{
+            "number of lost frames after which a new submap begins; a loop joins it to the others",
+            "frames",
+            1,
+            1000000000}));
     visit.group("appearance_match", self.appearance_match);
     visit.group("search_match", self.search_match);
   }

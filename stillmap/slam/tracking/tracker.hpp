@@ -34,30 +34,41 @@ struct TrackerConfig {
   static void fields(Self& self, Visitor& visit) {
     visit("frame_search_radius_px",
           self.frame_search_radius_px,
-          FieldInfo{"search for the last frame's points, on the finest level", "px", 1, 200});
+          FieldInfo{"search radius for the previous frame's landmarks, at the finest pyramid level",
+                    "px",
+                    1,
+                    200});
     visit("map_search_radius_px",
           self.map_search_radius_px,
-          FieldInfo{"search for the local map's points, on the finest level", "px", 1, 100});
+          FieldInfo{"search radius for the local map's landmarks, at the finest pyramid level",
+                    "px",
+                    1,
+                    100});
     visit("local_keyframes",
           self.local_keyframes,
-          FieldInfo{"key frames whose landmarks are searched in a frame", "", 1, 1000});
+          FieldInfo{
+              "number of key frames whose landmarks form the local map of a frame", "", 1, 1000});
     visit("min_frame_matches",
           self.min_frame_matches,
-          FieldInfo{"matches with the last frame, or else with the reference key frame, from which "
-                    "a pose is sought",
+          FieldInfo{"number of matches with the previous frame, or with the reference key frame, "
+                    "needed to estimate a pose",
                     "",
                     3,
                     1000});
     visit("min_frame_inliers",
           self.min_frame_inliers,
-          FieldInfo{"of these matches that must agree with the pose", "", 3, 1000});
+          FieldInfo{"number of these matches that must agree with the pose", "", 3, 1000});
     visit.group("frame_match", self.frame_match);
     visit.group("reference_match", self.reference_match);
     visit.group("map_match", self.map_match);
     visit.group("shutter", self.shutter);
     visit("min_inliers",
           self.min_inliers,
-          FieldInfo{"landmarks that must be found for a frame to be tracked", "", 6, 1000});
+          common_setting(FieldInfo{
+              "number of landmarks that a frame must match to be tracked; with fewer it is lost",
+              "",
+              6,
+              1000}));
   }
 };
 
