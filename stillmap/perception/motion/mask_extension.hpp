@@ -53,6 +53,12 @@ struct MaskExtensionConfig {
                     "pixels at 640x480",
                     0,
                     307200});
+    connected_fields(self, visit);
+  }
+
+ private:
+  template <class Self, class Visitor>
+  static void connected_fields(Self& self, Visitor& visit) {
     visit("reach_m",
           self.reach_m,
           FieldInfo{"connected: distance from the median within which a depth is never an outlier",
