@@ -19,7 +19,7 @@ using Vector9d = Eigen::Matrix<double, 9, 1>;
 using Matrix9d = Eigen::Matrix<double, 9, 9>;
 constexpr std::size_t kSample = 8;
 
-/// Moves points to their centroid, at a mean distance of sqrt(2).
+/// Normalises points to centroid 0 and a mean distance of sqrt(2).
 struct Normalizer {
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
   double scale = 1;
@@ -51,7 +51,7 @@ Eigen::Matrix3d rank_two(const Eigen::Matrix3d& F) {
   return svd.matrixU() * values.asDiagonal() * svd.matrixV().transpose();
 }
 
-/// How well matches agree with a fundamental matrix.
+/// The agreement of matches with a fundamental matrix.
 struct Agreement {
   std::vector<std::uint8_t> inlier;
   int inliers = 0;

@@ -13,11 +13,11 @@
 
 namespace stillmap {
 
-/// Indices below a population's size, of the items that one model is made from.
+/// Indices of the items of a population from which one model is made.
 template <std::size_t kSize>
 using Sample = std::array<std::uint32_t, kSize>;
 
-/// Draws with replacement: an index may come twice. `population` is at least 1.
+/// Draws with replacement: an index may occur twice. `population` must be at least 1.
 template <std::size_t kSize>
 [[nodiscard]] Sample<kSize> draw_with_replacement(std::mt19937& rng, std::uint32_t population) {
   Sample<kSize> sample;
@@ -25,7 +25,7 @@ template <std::size_t kSize>
   return sample;
 }
 
-/// Draws without replacement: no index comes twice. `population` is at least kSize.
+/// Draws without replacement: no index occurs twice. `population` must be at least kSize.
 template <std::size_t kSize>
 [[nodiscard]] Sample<kSize> draw_without_replacement(std::mt19937& rng, std::uint32_t population) {
   Sample<kSize> sample;
@@ -37,26 +37,27 @@ template <std::size_t kSize>
   return sample;
 }
 
-/// Iterations after which a sample of inliers alone has been drawn with a probability of 99.5 %,
-/// where `inliers` of `population` are, between 1 and `at_most` (Fischler and Bolles 1981).
+/// The number of iterations after which a sample of inliers alone was drawn with a probability of
+/// 99.5 %, for `inliers` inliers in `population` items; clamped to 1 and `at_most` (Fischler and
+/// Bolles 1981).
 [[nodiscard]] int ransac_iterations(int inliers,
                                     std::size_t population,
                                     std::size_t sample_size,
                                     int at_most);
 
-/// A model and the support it has, as far as its caller measures it.
+/// A model with its support, as measured by the caller.
 template <class Model, class Support>
 struct Consensus {
   Model model;
   Support support;
 };
 
-/// Random sample consensus (Fischler and Bolles 1981): of the models that `propose()` makes from
-/// random samples the one with the greatest `support_of(model)`, of equal ones the earliest.
+/// Random sample consensus (Fischler and Bolles 1981): among the models that `propose()` makes from
+/// random samples, the one with the greatest `support_of(model)`; the earliest among equals.
 ///
-/// `propose()` returns an optional model, nothing for a sample that tells none. A support is
-/// compared by `<`; nothing is returned where no model has more than `least`. After each best model
-/// `needed(support)` says how many iterations are enough in all.
+/// `propose()` returns an optional model, nothing for a degenerate sample. Supports are compared by
+/// `<`; the result is nothing if no model has more support than `least`. After each new best model
+/// `needed(support)` gives the total number of iterations that suffice.
 template <class Support, class Propose, class SupportOf, class Needed>
 [[nodiscard]] auto ransac(
     int max_iterations, Support least, Propose propose, SupportOf support_of, Needed needed) {
@@ -74,7 +75,7 @@ template <class Support, class Propose, class SupportOf, class Needed>
   return best;
 }
 
-/// The same with a fixed number of iterations.
+/// ransac with a fixed number of iterations.
 template <class Support, class Propose, class SupportOf>
 [[nodiscard]] auto ransac(int iterations, Support least, Propose propose, SupportOf support_of) {
   return ransac(iterations, std::move(least), propose, support_of, [iterations](const Support&) {

@@ -10,7 +10,7 @@
 namespace stillmap {
 namespace {
 
-/// Weight of a residual under Cauchy's loss: what is far off has hardly any say.
+/// The weight of a residual under the Cauchy loss: small for large residuals.
 double cauchy_weight(double squared, double scale) {
   return 1.0 / (1.0 + squared / (scale * scale));
 }

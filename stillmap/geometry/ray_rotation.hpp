@@ -10,13 +10,13 @@
 
 namespace stillmap {
 
-/// The rotation that turns the rays of most matches into one another best, as if the camera had
-/// only turned. At least three matches.
+/// The rotation that best aligns the rays of most matches, as if the camera had only rotated. Needs
+/// at least three matches.
 [[nodiscard]] Eigen::Matrix3d ray_rotation(const CameraModel& camera,
                                            std::span<const PointMatch> matches);
 
-/// How far a match is from where it would be if the camera had turned by `R` alone, pixels;
-/// infinite when turned out of view.
+/// The distance, pixels, of a match from its position under the rotation `R` alone; infinite if
+/// that is out of view.
 [[nodiscard]] double rotation_residual_px(const CameraModel& camera,
                                           const Eigen::Matrix3d& R_current_previous,
                                           const PointMatch& match);

@@ -81,23 +81,23 @@ struct StaticMatchesConfig {
   }
 };
 
-/// What two frames say of the camera between them. Empty when they say nothing.
+/// The motion of the camera between two frames. Empty if the matches do not determine it.
 struct TwoViewGeometry {
-  std::optional<Eigen::Matrix3d> F;    ///< none where the camera only turns
-  std::optional<Eigen::Isometry3d> T;  ///< T_current_previous, when depth or a guess gives it
-  std::optional<Eigen::Matrix3d> R;    ///< where there is no F: how the camera turns
-  bool estimated = false;              ///< from the matches, not guessed
+  std::optional<Eigen::Matrix3d> F;    ///< none if the camera only rotates
+  std::optional<Eigen::Isometry3d> T;  ///< T_current_previous, if depth or the prediction gives it
+  std::optional<Eigen::Matrix3d> R;    ///< the rotation, if there is no F
+  bool estimated = false;              ///< from matches, not from the prediction
 };
 
 enum class MatchVerdict : std::uint8_t {
   kStatic,
   kDynamic,
-  kUnknown,  ///< nothing is known that could tell
+  kUnknown,  ///< not enough is known
 };
 
-/// Fan 2020, section III-E: the geometry of two frames from matches in the environment region. F by
-/// RANSAC, the motion from the depth of its inliers. A camera that only turns has no F. Where too
-/// few match, the `expected_T_current_previous`, if there is one, stands in.
+/// The geometry of two frames from matches in the environment region (Fan 2020, section III-F): F
+/// by RANSAC, the motion from the depth of the inliers. A camera that only rotates has no F. With
+/// too few matches `expected_T_current_previous`, if given, is used instead.
 [[nodiscard]] TwoViewGeometry estimate_two_view(
     const CameraModel& camera,
     std::span<const PointMatch> environment,
@@ -105,9 +105,9 @@ enum class MatchVerdict : std::uint8_t {
     const StaticMatchesConfig& config,
     std::mt19937& rng);
 
-/// Fan 2020, Eqs. (15)-(17), for a match in the dynamic region: it moves when it is off its
-/// epipolar line. What is on it may move along it, so the point's reprojection under the motion,
-/// and its depth, must agree as well where they are known.
+/// The verdict on a match in the dynamic region (Fan 2020, section III-F, Eqs. (15)-(17)): it moves
+/// if it is off its epipolar line. A point may also move along the line, so the reprojection under
+/// the motion, and the depth, must agree, too, if they are known.
 [[nodiscard]] MatchVerdict judge_match(const CameraModel& camera,
                                        const TwoViewGeometry& geometry,
                                        const PointMatch& match,

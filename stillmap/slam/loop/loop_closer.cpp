@@ -9,9 +9,9 @@
 namespace stillmap {
 namespace {
 
-constexpr std::size_t kEndKeyframes = 10;  // of each end, whose landmarks are merged
+constexpr std::size_t kEndKeyframes = 10;  // key frames of each end whose landmarks are merged
 
-// The later submap moves: what was there first stays where it is.
+// The later submap moves; the earlier one keeps its coordinates.
 void join_submaps(Map& map, const LoopMatch& found) {
   const Keyframe& a = map.keyframe(found.edge.a);
   const Keyframe& b = map.keyframe(found.edge.b);
@@ -51,7 +51,7 @@ void merge_matches(Map& map, const LoopMatch& found) {
   }
 }
 
-// A key frame and those that share most landmarks with it.
+// A key frame with those that share most landmarks with it.
 std::vector<KeyframeId> end_of_loop(const Map& map, KeyframeId id) {
   std::vector<KeyframeId> end = {id};
   for (const CovisibleKeyframe& other : covisible_keyframes(map, id)) {
@@ -76,7 +76,7 @@ void merge_ends(Map& map,
                 const CameraModel& camera,
                 const MeasurementModel& measure,
                 const LandmarkFusionConfig& config) {
-  // Before the matches join them, so that each is a neighbourhood of its own.
+  // Computed before the matches are merged, so that the neighbourhoods are separate.
   const std::vector<KeyframeId> earlier = end_of_loop(map, found.edge.a);
   const std::vector<KeyframeId> later = end_of_loop(map, found.edge.b);
   merge_matches(map, found);
@@ -107,7 +107,7 @@ bool close_loop(Map& map,
     return false;
   }
   merge_ends(map, found, camera, measure, config.fusion);
-  (void)map.take_changes();  // of the whole map: nobody waits for them
+  (void)map.take_changes();  // changes of the owner's map need not be reported
   return true;
 }
 

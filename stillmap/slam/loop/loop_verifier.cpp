@@ -35,7 +35,7 @@ std::vector<LoopVerifier::Match> LoopVerifier::match(const LoopView& a, const Lo
   return matches;
 }
 
-// The point of each side falls where the other has the feature.
+// Whether the point of each view projects to the feature of the other.
 bool LoopVerifier::agrees(const LoopView& a,
                           const LoopView& b,
                           const Eigen::Isometry3d& T_a_b,
@@ -100,7 +100,7 @@ Eigen::Isometry3d LoopVerifier::refine(const LoopView& a,
   return interpolate(of_a, of_b.inverse(), 0.5);
 }
 
-// How well the matches fix the pose, from the curvature of the errors in a's image.
+// The standard deviations of the pose, from the curvature of the errors in a's image.
 LoopVerifier::Spread LoopVerifier::spread(const LoopView& a,
                                           const LoopView& b,
                                           const Eigen::Isometry3d& T_a_b,
@@ -119,7 +119,7 @@ LoopVerifier::Spread LoopVerifier::spread(const LoopView& a,
           std::sqrt(covariance->bottomRightCorner<3, 3>().trace())};
 }
 
-// Where a should see b's points; the descriptor is null for those that it should not see.
+// The projections of b's points into a; the descriptor is null for points out of view.
 std::vector<Projection> LoopVerifier::project(const LoopView& b,
                                               const Eigen::Isometry3d& T_a_b) const {
   const std::vector<float>& scales = measure_.level_scales();
@@ -128,7 +128,7 @@ std::vector<Projection> LoopVerifier::project(const LoopView& b,
     if (!b.p_camera[i]) continue;
     const Eigen::Vector3d p_a = T_a_b * *b.p_camera[i];
     if (!in_view(camera_, p_a)) continue;
-    // A corner looks larger from nearer by.
+    // A corner looks larger from nearby.
     const double ratio = b.p_camera[i]->norm() / p_a.norm();
     const double scale = static_cast<double>(scales[b.features->level[i]]) * ratio;
     const auto above = std::ranges::lower_bound(scales, static_cast<float>(0.95 * scale));
@@ -161,9 +161,9 @@ std::optional<LoopMatch> LoopVerifier::verify(FrameId frame,
   Eigen::Isometry3d& T_a_b = loop.edge.T_a_b;
   T_a_b = refine(a, b, *sampled, agreeing(a, b, *sampled, by_appearance));
 
-  // Twice, for the first pose may come from one corner of the image.
+  // Twice, because the first pose may be based on one corner of the image.
   for (int round = 0; round < 2; ++round) {
-    std::vector<std::uint32_t> seen;  // features of b, as the projections
+    std::vector<std::uint32_t> seen;  // features of b, in the order of the projections
     std::vector<Projection> projections;
     const std::vector<Projection> all = project(b, T_a_b);
     for (std::uint32_t i = 0; i < all.size(); ++i) {

@@ -55,24 +55,25 @@ struct LoopVerifierConfig {
   }
 };
 
-/// Decides from geometry whether two images show one place, and how they stand to each other.
+/// Decides by geometry whether two images show one place, and estimates their relative pose.
 ///
-/// Matches by appearance that a rigid motion explains (RANSAC over three matches; a match agrees
-/// when the point of each side falls, at its depth, where the other has its feature); the pose is
-/// refined, the other matches are looked for where it says, and the pose is refined with them. A
-/// loop needs enough of them, and a fair share of what the one image should see of the other: two
-/// desks of one make have a desk in common but not what stands round it.
+/// Features are matched by appearance, and RANSAC over three matches finds the rigid motion that
+/// most matches agree with: the point of each view projects, at its depth, to the feature of the
+/// other. The pose is refined, further matches are searched from it, and it is refined with them. A
+/// loop needs a number of matches, and a share of the points of one image that should be visible in
+/// the other: two desks of one make have the desk in common, but not their surroundings.
 class LoopVerifier {
  public:
-  /// `measure` should trust depths as far as the sensor earns it, with an inverse depth sigma of
-  /// about 0.01: before a wall, pixels alone hardly tell a step aside from a turn.
+  /// `measure` should give depth its full weight, with an inverse depth sigma of about 0.01: before
+  /// a wall pixels alone hardly distinguish a step to the side from a turn.
   LoopVerifier(const LoopVerifierConfig& config,
                const CameraModel& camera,
                MeasurementModel measure,
                std::uint32_t seed);
 
-  /// Nothing where the views are not of one place, as far as can be told. `frame`: a's, from which
-  /// (with the seed) the random draws follow; the same input gives the same bits.
+  /// The match of two views; nothing unless they are confirmed to show one place. `frame` is the
+  /// frame of a, which with the seed determines the random draws. The same input gives the same
+  /// bits.
   [[nodiscard]] std::optional<LoopMatch> verify(FrameId frame,
                                                 const LoopView& a,
                                                 const LoopView& b) const;

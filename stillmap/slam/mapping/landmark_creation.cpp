@@ -14,7 +14,7 @@ namespace {
 
 struct Ray {
   Eigen::Vector3d origin;
-  Eigen::Vector3d direction;  // unit, in the world
+  Eigen::Vector3d direction;  // unit, in the world frame
 };
 
 Ray feature_ray(const CameraModel& camera, const Keyframe& keyframe, std::uint32_t feature) {
@@ -23,7 +23,7 @@ Ray feature_ray(const CameraModel& camera, const Keyframe& keyframe, std::uint32
           (keyframe.T_world_camera.linear() * camera.unproject(px, 1.0)).normalized()};
 }
 
-// The point midway between two rays; nothing where they do not meet before both cameras.
+// The point midway between two rays; nothing unless it is in front of both cameras.
 std::optional<Eigen::Vector3d> intersect(const Ray& a, const Ray& b) {
   const Eigen::Vector3d offset = b.origin - a.origin;
   const double c = a.direction.dot(b.direction);
@@ -44,7 +44,7 @@ bool agrees(const CameraModel& camera,
   return agrees_with(camera, measure(*keyframe.features, feature), p_camera);
 }
 
-// Fundamental matrix: p_b^T F p_a = 0 for ideal pixels of the two views.
+// The fundamental matrix: p_b^T F p_a = 0 for ideal pixels of the two views.
 Eigen::Matrix3d fundamental(const CameraModel& camera, const Keyframe& a, const Keyframe& b) {
   const Eigen::Isometry3d T_b_a = b.T_world_camera.inverse() * a.T_world_camera;
   Eigen::Matrix3d K_inverse;
@@ -53,7 +53,7 @@ Eigen::Matrix3d fundamental(const CameraModel& camera, const Keyframe& a, const 
   return K_inverse.transpose() * skew(T_b_a.translation()) * T_b_a.linear() * K_inverse;
 }
 
-// Features of a key frame that see no landmark.
+// The features of a key frame that observe no landmark.
 std::vector<std::uint32_t> free_features(const Keyframe& keyframe) {
   std::vector<std::uint32_t> free;
   for (std::uint32_t i = 0; i < keyframe.landmarks.size(); ++i) {
@@ -62,7 +62,7 @@ std::vector<std::uint32_t> free_features(const Keyframe& keyframe) {
   return free;
 }
 
-// The free feature of `b` that looks most like feature `i` of `a` and lies on its epipolar line.
+// The free feature of `b` most similar to feature `i` of `a` near its epipolar line.
 STILLMAP_POPCOUNT_CLONES
 std::optional<std::uint32_t> match_on_line(const Eigen::Vector3d& line,
                                            const Descriptor& descriptor,
@@ -85,7 +85,7 @@ std::optional<std::uint32_t> match_on_line(const Eigen::Vector3d& line,
   return match;
 }
 
-// Triangulates what two key frames see in common; returns how many landmarks that gave.
+// Triangulates the points that two key frames have in common. Returns the number of new landmarks.
 int triangulate_pair(Map& map,
                      KeyframeId a_id,
                      KeyframeId b_id,

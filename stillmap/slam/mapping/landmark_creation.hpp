@@ -49,16 +49,16 @@ struct LandmarkCreationConfig {
   }
 };
 
-/// Makes landmarks of the key frame's features that see none, from their depth.
+/// Creates landmarks from the depth of the key frame's features that observe none.
 void create_landmarks_from_depth(Map& map,
                                  KeyframeId keyframe,
                                  const CameraModel& camera,
                                  const MeasurementModel& measure,
                                  const LandmarkCreationConfig& config);
 
-/// Makes landmarks of features that have no depth in at least one of two views: matches them along
-/// epipolar lines between the key frame and its best covisible neighbours and triangulates.
-/// Returns how many.
+/// Creates landmarks from features without depth in at least one of two views: matches them along
+/// epipolar lines between the key frame and its most covisible neighbours, and triangulates.
+/// Returns the number created.
 int triangulate_landmarks(Map& map,
                           KeyframeId keyframe,
                           const CameraModel& camera,

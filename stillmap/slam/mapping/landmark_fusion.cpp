@@ -39,7 +39,7 @@ int fuse_landmarks(Map& map,
   for (const FeatureMatch& match :
        match_projections(projections, *features, {}, {.max_distance = config.max_distance})) {
     const LandmarkId id = projected[match.query];
-    const Landmark* landmark = map.find(id);  // an earlier merge may have taken it
+    const Landmark* landmark = map.find(id);  // an earlier merge may have removed it
     if (landmark == nullptr || seen_by(*landmark, keyframe)) continue;
     const Eigen::Vector3d p_camera = T_camera_world * landmark->p_world;
     if (!agrees_with(camera, measure(*features, match.feature), p_camera)) continue;
@@ -50,7 +50,7 @@ int fuse_landmarks(Map& map,
       const bool keep_other = other->observations.size() >= landmark->observations.size();
       map.merge_landmarks(keep_other ? id : present, keep_other ? present : id);
     } else {
-      continue;  // it belongs to a landmark outside the window
+      continue;  // the feature observes a landmark outside the window
     }
     ++found;
   }

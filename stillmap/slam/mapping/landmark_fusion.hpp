@@ -33,10 +33,10 @@ struct LandmarkFusionConfig {
   }
 };
 
-/// Finds landmarks again in a key frame that should see them: `landmarks` are projected into it and
-/// matched. Where the matched feature sees no landmark it gets an observation of this one; where it
-/// sees another, the two are merged into the one with more observations. Returns how many were
-/// found.
+/// Searches landmarks in a key frame in which they should be visible: `landmarks` are projected
+/// into it and matched. A matched feature without a landmark becomes an observation of the
+/// landmark; if the feature observes another, the two are merged into the one with more
+/// observations. Returns the number of matches.
 int fuse_landmarks(Map& map,
                    KeyframeId keyframe,
                    std::span<const LandmarkId> landmarks,

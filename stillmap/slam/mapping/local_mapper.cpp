@@ -10,7 +10,7 @@
 namespace stillmap {
 namespace {
 
-// Landmarks that key frames see, each once, in the order of ids.
+// The landmarks that key frames observe, without repetition, in the order of ids.
 std::vector<LandmarkId> landmarks_of(const Map& map, std::span<const KeyframeId> keyframes) {
   std::set<LandmarkId> seen;
   for (const KeyframeId id : keyframes) {

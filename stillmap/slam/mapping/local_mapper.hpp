@@ -41,15 +41,15 @@ struct MappingConfig {
   }
 };
 
-/// The key frames whose surroundings a new key frame changes: itself and those that share most
-/// landmarks with it. The new one is first.
+/// The core of the window of a new key frame: itself, first, and the key frames that share most
+/// landmarks with it.
 [[nodiscard]] std::vector<KeyframeId> mapping_core(const Map& map,
                                                    KeyframeId newest,
                                                    const MappingConfig& config);
 
-/// What a new key frame means for the map round it: landmarks are culled, triangulated and fused
-/// with those of its neighbours, poses and points adjusted, redundant key frames dropped. `window`
-/// is map.window(core); the job shares nothing with its owner and may run on any thread.
+/// Local mapping around a new key frame: culls, triangulates and fuses landmarks with those of its
+/// neighbours, adjusts poses and points, and drops redundant key frames. `window` is
+/// map.window(core). The job shares nothing with the owner of the map and may run on any thread.
 [[nodiscard]] MapUpdate map_locally(Map window,
                                     const std::vector<KeyframeId>& core,
                                     const CameraModel& camera,

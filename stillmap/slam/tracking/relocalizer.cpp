@@ -14,7 +14,7 @@
 namespace stillmap {
 namespace {
 
-// An image without a feature round here is hidden by somebody, or shows nothing.
+// An image area without features is hidden by a person, or has no texture.
 bool has_feature_near(const Features& features, const Eigen::Vector2f& px, float radius_px) {
   bool found = false;
   features.grid.visit_near(px, radius_px, [&](std::uint32_t i) {
@@ -161,7 +161,7 @@ double Relocalizer::share_found(const Features& features,
     const std::optional<Projection> projection =
         project_landmark(camera_, measure_.level_scales(), pose.T_camera_world, landmark, 1.0);
     if (!projection || !has_feature_near(features, projection->px, near_px)) continue;
-    // As often as tracking has found it where it should be.
+    // Weighted by the share of frames in which tracking found it when expected.
     expected += (landmark.times_found + 1.0) / (landmark.times_expected + 1.0);
     seen += found.contains(id) ? 1 : 0;
   }
@@ -178,7 +178,7 @@ std::optional<Relocalization> Relocalizer::verify(FrameId frame,
       sample_pose(frame, features, keyframe, by_appearance);
   if (!sampled) return std::nullopt;
   Pose pose = optimize(*sampled, agreeing(by_appearance, *sampled));
-  // The first pose may come from one corner of the image.
+  // The first pose may be based on one corner of the image.
   const std::vector<LandmarkId> landmarks = local_landmarks(keyframe, map);
   for (const double radius_px : {config_.search_radius_px, config_.search_radius_px / 2}) {
     pose = optimize(pose.T_camera_world,

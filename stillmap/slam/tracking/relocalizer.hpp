@@ -68,22 +68,23 @@ struct RelocalizerConfig {
   }
 };
 
-/// A place that was found again.
+/// The result of a relocalisation.
 struct Relocalization {
   Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();
   std::vector<std::pair<std::uint32_t, LandmarkId>> matches;  ///< (feature, landmark), inliers
-  /// Landmarks of the key frame that are found, to those that tracking would find there, as often
-  /// as it found each of them when it should have seen it. About 1 at a known place.
+  /// The ratio of the matched landmarks of the key frame to those that tracking would match there,
+  /// each weighted by the share of frames in which tracking found it when expected. About 1 at a
+  /// known place.
   double share = 0;
 };
 
-/// Finds a frame's pose without knowing where the camera is.
+/// Finds the pose of a frame without a prediction.
 ///
-/// Each key frame that looks like the frame is matched by appearance; the pose of three matches
-/// with depth that most matches agree with (RANSAC; those without depth count too) is refined, more
-/// landmarks are looked for where it says, and it is refined with them. Many of the landmarks that
-/// should be seen have to be: a place that only has some things in common with a known one is not
-/// it.
+/// Each key frame that looks like the frame is matched by appearance. RANSAC finds the pose from
+/// three matches with depth that most matches agree with, including those without depth. The pose
+/// is refined, more landmarks are searched from it, and it is refined with them. Many of the
+/// landmarks that should be visible must be matched, since another place may have some objects in
+/// common with a known one.
 class Relocalizer {
  public:
   Relocalizer(const RelocalizerConfig& config,
@@ -91,8 +92,8 @@ class Relocalizer {
               MeasurementModel measure,
               std::uint32_t seed);
 
-  /// Of the key frames that look most like the frame, the place with most landmarks found. Nothing
-  /// when none fits. `places` holds key frames of the map.
+  /// The place with the most matched landmarks among the key frames that look most like the frame.
+  /// Nothing when none fits. `places` has key frames of the map.
   [[nodiscard]] std::optional<Relocalization> find(FrameId frame,
                                                    const Features& features,
                                                    const Map& map,

@@ -90,7 +90,7 @@ std::optional<Tracker::PoseFromMatches> Tracker::relocalize(const TrackedFrame& 
   return pose;
 }
 
-// The features were corrected with the velocity that was expected; now it is known.
+// The features were corrected with the predicted velocity. Now the velocity is known.
 Tracker::PoseFromMatches Tracker::refine_shutter(const TrackedFrame& frame,
                                                  Features& features,
                                                  const PoseFromMatches& pose,
@@ -162,7 +162,7 @@ Tracker::Matches Tracker::match_last_frame(const Features& features,
   Matches points;
   std::vector<Projection> projections;
   std::vector<float> angles;
-  std::unordered_set<LandmarkId> known;  // two features' landmarks may have been merged since
+  std::unordered_set<LandmarkId> known;  // landmarks of two features may have been merged since
   for (std::uint32_t i = 0; i < last.size(); ++i) {
     const LandmarkId id = map.resolve(last_->landmarks[i]);
     if (id.valid() ? !known.insert(id).second : !measure_.has_depth(last, i)) continue;
@@ -228,7 +228,7 @@ std::optional<Tracker::PoseFromMatches> Tracker::track_reference(const TrackedFr
   return pose;
 }
 
-// Sets the frame's reference to the key frame that shares most with it.
+// Sets the frame's reference to the key frame that shares most landmarks with it.
 std::vector<LandmarkId> Tracker::local_landmarks(TrackedFrame& frame,
                                                  const Matches& matches,
                                                  const Map& map) const {
@@ -265,7 +265,8 @@ Tracker::PoseFromMatches Tracker::track_local_map(TrackedFrame& frame,
   Matches matches;
   std::vector<std::uint8_t> taken(features.size(), 0);
   for (const Match& match : start.inliers) {
-    if (!match.landmark.valid()) continue;  // a point of the last frame alone has done its work
+    if (!match.landmark.valid())
+      continue;  // a point of the previous frame alone is used for matching only
     matches.push_back(match);
     taken[match.feature] = 1;
     frame.expected.push_back(match.landmark);

@@ -72,12 +72,13 @@ struct TrackerConfig {
   }
 };
 
-/// The camera's pose, frame after frame, against a map that it only reads.
+/// Tracks the camera's pose frame by frame against a map, which it only reads.
 ///
-/// Each frame is first matched to the last one under constant velocity (with a wider search, and
-/// then with the reference key frame by appearance, if that fails), then to the local map: the
-/// landmarks of the key frames that share landmarks with it. When lost, it looks for a known place
-/// in every frame. Poses are kept relative to key frames, so that changes of the map reach them.
+/// Each frame is first matched to the previous one under constant velocity; if that fails, with a
+/// wider search, then with the reference key frame by appearance. Then it is matched to the local
+/// map: the landmarks of the key frames that share landmarks with it. While lost, it tries to
+/// relocalise in every frame. Poses are kept relative to key frames, so that they follow changes of
+/// the map.
 class Tracker {
  public:
   Tracker(const TrackerConfig& config,
@@ -89,28 +90,28 @@ class Tracker {
   /// The frame that a world begins with: at its origin.
   [[nodiscard]] TrackedFrame start(const RgbdFrame& frame, FeaturesPtr features);
 
-  /// Lost as long as no world was begun and no place of the map is recognised. `places` holds the
-  /// map's key frames, to look for the camera among them.
+  /// The result is lost until a submap was begun or a place of the map is recognised. `places` has
+  /// the key frames of the map, for relocalisation.
   [[nodiscard]] TrackedFrame track(const RgbdFrame& frame,
                                    Features features,
                                    const Map& map,
                                    const PlaceIndex& places);
 
-  /// Where the camera should be at a time soon after the last frame; nothing when it is lost or has
-  /// not begun.
+  /// The predicted pose at a time soon after the last frame; nothing while lost and before the
+  /// first frame.
   [[nodiscard]] std::optional<Eigen::Isometry3d> expected_pose(double stamp_s,
                                                                const Map& map) const;
 
-  /// The camera's rolling shutter, as learnt so far.
+  /// The present estimate of the readout time of the camera's rolling shutter.
   [[nodiscard]] double readout_s() const { return readout_.readout_s(); }
 
-  /// The last frame has become a key frame of the map.
+  /// Tells the tracker that the last frame has become a key frame of the map.
   void set_reference(KeyframeId keyframe, const Map& map);
 
  private:
   struct Match {
     std::uint32_t feature;
-    LandmarkId landmark;  // invalid for a point of the last frame that is no landmark
+    LandmarkId landmark;  // invalid for a point of the previous frame that is no landmark
     Eigen::Vector3d p_world;
   };
   using Matches = std::vector<Match>;
