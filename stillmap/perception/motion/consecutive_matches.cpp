@@ -6,9 +6,9 @@
 namespace stillmap {
 namespace {
 
-constexpr double kFarDepthM = 4.0;  // where depth is missing, most often because it is far
+constexpr double kFarDepthM = 4.0;  // assumed for missing depth, which is mostly far
 
-/// Where a feature would be, if it stands still; nothing when behind the camera.
+/// The static reprojection of a feature; nothing if it is behind the camera.
 std::optional<Eigen::Vector2d> expected_px(const Features& features,
                                            std::size_t i,
                                            const CameraModel& camera,
