@@ -44,8 +44,8 @@ struct DetectionFaultOptions {
   double miss_rate = 0.065;   ///< share of frames in which an object is missed, at most 0.18
   double min_pixels = 600;    ///< smaller objects are always missed; at 640x480
   double min_visible_share = 0.5;  ///< objects with a smaller visible share are always missed
-  double duplicate_rate =
-      0.03;  ///< chance that an object is detected a second time, as a box without mask
+  /// chance that an object is detected a second time, as a box without mask
+  double duplicate_rate = 0.03;
   double false_rate = 0.03;  ///< chance of a false detection
 };
 

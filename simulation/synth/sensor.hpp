@@ -23,8 +23,8 @@ struct SensorOptions {
 
   double color_sigma = 2.0;   ///< standard deviation of each channel, of 255
   double drift_share = 0.06;  ///< greatest change of brightness; half of it for each channel
-  double depth_sigma_at_1m_m =
-      0.0015;  ///< standard deviation of depth at 1 m; grows with depth squared
+  /// standard deviation of depth at 1 m; grows with depth squared
+  double depth_sigma_at_1m_m = 0.0015;
   double disparity_step_px = 0.125;  ///< quantisation
   double baseline_m = 0.075;         ///< from the camera to the projector
   double min_depth_m = 0.5;          ///< least measured depth

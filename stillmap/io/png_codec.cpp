@@ -229,8 +229,8 @@ cv::Mat decode_by_libpng(std::string_view bytes, PngKind kind, const std::string
 std::string encode_png_bytes(const cv::Mat& image) {
   const int type = image.type();
   STILLMAP_CHECK(!image.empty() && (type == CV_8UC3 || type == CV_8UC1 || type == CV_16UC1));
-  cv::Mat same_pixels =
-      image;  // libpng's interface asks for writable rows but does not write to them
+  // libpng's interface asks for writable rows but does not write to them
+  cv::Mat same_pixels = image;
   std::vector<png_bytep> rows = row_pointers(same_pixels);
   PngWriter writer;
   if (!writer.write(image, rows.data())) {

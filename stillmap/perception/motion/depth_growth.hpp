@@ -12,9 +12,9 @@ namespace stillmap {
 struct GrowthRule {
   DepthInterval seeds;  ///< depths of mask pixels that belong to the object
   float margin_m = 0;   ///< widening of that interval for pixels outside the mask
-  double large_part =
-      1;             ///< share of the mask above which a part belongs to the object at any depth
-  float step_m = 0;  ///< neighbours are connected when they differ by less than
+  /// share of the mask above which a part belongs to the object at any depth
+  double large_part = 1;
+  float step_m = 0;      ///< neighbours are connected when they differ by less than
   float step_per_m = 0;  ///< step_m + step_per_m z^2
   int longest_way_px = 0;
   double min_mask_share = 0;

@@ -53,12 +53,12 @@ struct DynamicsMode {
   std::string_view meaning;  ///< for help texts
   bool judges = true;        ///< false: motion is ignored
   ExtensionRule extension = ExtensionRule::kNone;
-  bool interaction =
-      false;  ///< an object that a person interacts with is dynamic (Fan 2020, Eqs. (8)-(9))
+  /// an object that a person interacts with is dynamic (Fan 2020, Eqs. (8)-(9))
+  bool interaction = false;
   JumpRule jumps = JumpRule::kNone;
   bool motion = false;  ///< an object that is observed to move is dynamic
-  bool fills_after_one_sighting =
-      false;  ///< Fan 2020, section III-C; else as dynamics.tracker says
+  /// Fan 2020, section III-C; else as dynamics.tracker says
+  bool fills_after_one_sighting = false;
   DepthStabilityRule depth_stability = DepthStabilityRule::kNone;
   StaticMatchRule static_matches = StaticMatchRule::kNone;
   CloudRules cloud;

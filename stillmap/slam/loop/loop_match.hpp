@@ -17,8 +17,8 @@ struct LoopEdge {
   KeyframeId b;
   /// From the camera frame of b to that of a.
   Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();
-  double sigma_m =
-      0.005;  ///< by the matches alone; closing assumes more, as their errors correlate
+  /// by the matches alone; closing assumes more, as their errors correlate
+  double sigma_m = 0.005;
   double sigma_rad = 0.002;
 };
 

@@ -52,8 +52,8 @@ class LoopStage {
   void finish(Map& map, SubmapId submap);
 
  private:
-  using NumberedCorrection =
-      std::pair<int, GlobalCorrection>;  // number of the loop, and its correction
+  // number of the loop, and its correction
+  using NumberedCorrection = std::pair<int, GlobalCorrection>;
 
   LoopConfig config_;
   CameraModel camera_;

@@ -27,9 +27,9 @@ struct Landmark {
 
   // Derived from the observations by Map::refresh().
   Descriptor descriptor{};  ///< the one with the least median distance to the others
-  Eigen::Vector3d viewing_direction =
-      Eigen::Vector3d::Zero();  ///< mean direction from camera to point
-  double min_distance_m = 0;    ///< at other distances its corner is on no pyramid level
+  /// mean direction from camera to point
+  Eigen::Vector3d viewing_direction = Eigen::Vector3d::Zero();
+  double min_distance_m = 0;  ///< at other distances its corner is on no pyramid level
   double max_distance_m = 0;
 
   // The numbers of frames in which tracking expected it, and found it.

@@ -124,8 +124,8 @@ void Solver::linearize() {
     const Eigen::Vector3d r = reprojection_residual(problem_.camera, o.measurement, p_camera);
     const double weight = Huber(r.squaredNorm(), chi2_bound(o.measurement)).weight;
     const PointEquations eq = point_equations(problem_.camera, o.measurement, p_camera, r, weight);
-    const Eigen::Matrix3d H_mixed =
-        eq.H * T.linear();  // rows in camera axes, columns in world axes
+    // rows in camera axes, columns in world axes
+    const Eigen::Matrix3d H_mixed = eq.H * T.linear();
     H_point_[o.point].noalias() += T.linear().transpose() * H_mixed;
     g_point_[o.point].noalias() += T.linear().transpose() * eq.g;
     const std::uint32_t slot = slot_[o.camera];

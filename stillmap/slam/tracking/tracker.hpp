@@ -87,7 +87,7 @@ class Tracker {
           MeasurementModel measure,
           std::uint32_t seed);
 
-  /// The frame that a world begins with: at its origin.
+  /// Begins a submap with a frame, whose camera becomes its origin.
   [[nodiscard]] TrackedFrame start(const RgbdFrame& frame, FeaturesPtr features);
 
   /// The result is lost until a submap was begun or a place of the map is recognised. `places` has
