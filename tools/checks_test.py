@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Tests of check_sizes.py and check_layers.py."""
+"""Tests of check_sizes.py, check_layers.py and check_docs.py."""
 import pathlib
 import sys
 import tempfile
 import unittest
 
 sys.dont_write_bytecode = True
+import check_docs  # noqa: E402
 import check_layers  # noqa: E402
 import check_sizes  # noqa: E402
 
@@ -194,6 +195,29 @@ class Layers(unittest.TestCase):
         self.assertIsNone(check_layers.with_table("no markers", modules))
         self.assertEqual(self.changed("docs/architecture.md", "no markers"),
                          [f"docs/architecture.md: expected the lines {begin} and {end}"])
+
+
+class Docs(unittest.TestCase):
+    FILES = ["stillmap/dense/free_space.hpp", "tools/setup.py", "docs/a.md"]
+
+    def test_paths_of_sources(self):
+        text = ("`dense/free_space.hpp`, free_space.hpp, tools/setup.py, x.cpp, apps/NAME.cpp and a.cmake.in are fine; "
+                "`cloud/free_space.hpp`, space.hpp and (setup.cpp) are not.")
+        self.assertEqual(check_docs.problems_of(text, self.FILES),
+                         ["no file cloud/free_space.hpp", "no file setup.cpp", "no file space.hpp"])
+
+    def test_types_beside_files(self):
+        text = ("| view | `FreeSpace`, dense/free_space.hpp |\n| member | `FreeSpace::cell`, dense/free_space.hpp |\n"
+                "| other | `Space`, dense/free_space.hpp |")
+        self.assertEqual(check_docs.type_problems(text, self.FILES, lambda file: "struct FreeSpace {};"),
+                         ["no type Space in dense/free_space.hpp"])
+
+    def test_links(self):
+        with tempfile.TemporaryDirectory() as folder:
+            document = pathlib.Path(folder) / "a.md"
+            document.write_text("")
+            text = "[self](a.md) [part](a.md#part) [web](https://example.org) [none](b.md)"
+            self.assertEqual(check_docs.broken_links(document, text), ["no file b.md"])
 
 
 if __name__ == "__main__":

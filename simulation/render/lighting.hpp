@@ -8,22 +8,23 @@
 
 namespace stillmap {
 
-/// Most lamps that a world may have.
+/// The greatest number of lamps in a world.
 inline constexpr std::size_t kMostLamps = 3;
 
-/// How much of the light reaches a point: of each lamp the share that nothing hides, and of the
-/// light from everywhere the share that what is near leaves open; in [0, 1].
+/// The shares of light that reach a point, in [0, 1]: for each lamp the visible share, and for
+/// ambient light the share that near surfaces leave open.
 struct Openness {
   std::array<float, kMostLamps> lamps{};
   float around = 1.F;
 };
 
-/// Which effects of light are rendered.
+/// The effects of light that are rendered.
 struct LightOptions {
-  bool shadows = true;  ///< cast by lamps, soft, and the darkness of corners
+  bool shadows = true;  ///< soft shadows of lamps, and ambient occlusion
 };
 
-/// Shadows of an image, traced at every third pixel each way and smoothed within surfaces.
+/// The shadows of an image, traced at every third pixel of every third row and smoothed within
+/// surfaces.
 class Lighting {
  public:
   Lighting(const RayScene& scene,
@@ -31,7 +32,7 @@ class Lighting {
            const SurfaceBuffer& surfaces,
            const LightOptions& options);
 
-  /// What reaches a surfel near pixel (x, y), from the samples around that lie on its surface.
+  /// The openness of a surfel near pixel (x, y), from the samples around it on the same surface.
   [[nodiscard]] Openness openness_at(int x, int y, const Surfel& surfel) const;
 
  private:
@@ -45,12 +46,12 @@ class Lighting {
   void trace(const RayScene& scene, const World& world);
   void smooth(int dx, int dy);
 
-  int width_ = 0;  // of the samples
+  int width_ = 0;  // of the grid of samples
   int height_ = 0;
   std::vector<Sample> samples_;
 };
 
-/// The light on a surface with a normal at a point, 1 being full.
+/// The light at a point of a surface with a normal; 1 is full light.
 [[nodiscard]] float light_on(const World& world,
                              const Eigen::Vector3f& point,
                              const Eigen::Vector3f& normal,

@@ -12,7 +12,7 @@
 
 namespace stillmap {
 
-/// Where everything is while the shutter is open; what moves goes straight from one to the other.
+/// The poses of everything while the shutter is open. Motion is linear from `open` to `close`.
 struct Exposure {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< half way
   Eigen::Isometry3d T_world_camera_open = Eigen::Isometry3d::Identity();
@@ -20,25 +20,26 @@ struct Exposure {
   WorldState open;
   WorldState close;
 
-  /// Without motion: everything stands still while the shutter is open.
+  /// An exposure without motion.
   [[nodiscard]] static Exposure still(const Eigen::Isometry3d& T_world_camera, WorldState state);
 };
 
-/// The times within an exposure at which rays are traced, 0 its beginning and 1 its end: first its
-/// middle, then the middles of its halves.
+/// The times within an exposure at which rays are traced, from 0 to 1: first the middle, then the
+/// middles of both halves.
 inline constexpr std::array<float, 3> kMoments{0.5F, 0.25F, 0.75F};
 inline constexpr std::size_t kMiddle = 0;
-/// At which of them each quarter of a pixel is taken, in rows: the upper ones before the lower.
+/// The index of the moment of each quarter of a pixel, row by row: the upper quarters before the
+/// lower.
 inline constexpr std::array<std::size_t, 4> kQuarterMoments{1, 1, 2, 2};
 
-/// A ray in world axes.
+/// A ray in world coordinates.
 struct Ray {
   Eigen::Vector3f origin = Eigen::Vector3f::Zero();
   Eigen::Vector3f direction = Eigen::Vector3f::Zero();  ///< of any length
   float reach = 1e9F;                                   ///< in lengths of `direction`
 };
 
-/// The surface that a ray meets.
+/// The first surface on a ray.
 struct SurfaceHit {
   static constexpr std::uint32_t kNothing = 0xffffffffU;
   std::uint32_t object = kNothing;  ///< things first, then people, as in their World
@@ -48,20 +49,20 @@ struct SurfaceHit {
   [[nodiscard]] bool valid() const { return object != kNothing; }
 };
 
-/// A triangle of a surface in world axes.
+/// A triangle of a surface in world coordinates.
 struct SurfaceTriangle {
   std::array<Eigen::Vector3f, 3> open;   ///< corners when the shutter opens
-  std::array<Eigen::Vector3f, 3> close;  ///< and when it closes
+  std::array<Eigen::Vector3f, 3> close;  ///< corners when the shutter closes
   std::array<Eigen::Vector3f, 3> normals;
   std::array<Eigen::Vector2f, 3> uvs;
   MaterialId material = 0;
   bool moves = false;  ///< whether `open` and `close` differ
 };
 
-/// How many rays are traced at once.
+/// The number of rays that are traced at once.
 inline constexpr std::size_t kRays = 8;
 
-/// A world's surfaces, arranged for rays once. May serve several threads.
+/// The surfaces of a world, prepared once for tracing. Safe to use from several threads.
 class WorldGeometry {
  public:
   explicit WorldGeometry(std::shared_ptr<const World> world);
@@ -77,27 +78,27 @@ class WorldGeometry {
   std::unique_ptr<const Parts> parts_;
 };
 
-/// A world during one exposure. May serve several threads.
+/// A world during one exposure. Safe to use from several threads.
 class RayScene {
  public:
-  /// `geometry` must outlive this. `exposure` has the states of its world.
+  /// `geometry` must outlive the scene. `exposure` has states of the world of `geometry`.
   RayScene(const WorldGeometry& geometry, const Exposure& exposure);
   ~RayScene();
   RayScene(const RayScene&) = delete;
   RayScene& operator=(const RayScene&) = delete;
 
-  /// What the rays meet first at kMoments[moment]; at most kRays of them, which should lie close
+  /// The first hits of the rays at kMoments[moment]. At most kRays rays, which should be close
   /// together.
   [[nodiscard]] std::array<SurfaceHit, kRays> first_hits(std::span<const Ray> rays,
                                                          std::size_t moment = kMiddle) const;
 
-  /// Bit i says whether something lies on ray i within its reach, in the exposure's middle; at most
-  /// kRays of them.
+  /// Bit i is set if ray i is blocked within its reach in the middle of the exposure. At most kRays
+  /// rays.
   [[nodiscard]] std::uint32_t blocked(std::span<const Ray> rays) const;
 
   [[nodiscard]] SurfaceTriangle triangle(const SurfaceHit& hit) const;
 
-  /// The mask id of what was hit.
+  /// The mask id of the object that was hit.
   [[nodiscard]] std::uint8_t mask_id(std::uint32_t object) const;
 
  private:

@@ -13,25 +13,25 @@
 
 namespace stillmap {
 
-/// What a perfect camera sees.
+/// The images of a perfect camera.
 struct RenderedImage {
   ColorImage color;
-  DepthImage depth;  ///< exact z of the ray through the pixel's centre; 0 where it meets nothing
-  cv::Mat1b ids;     ///< mask id of what that ray meets; 0 for what cannot move
+  DepthImage depth;  ///< exact z at the pixel's centre; 0 where there is no surface
+  cv::Mat1b ids;     ///< mask id at the pixel's centre; 0 for objects that cannot move
 };
 
 struct RenderOptions {
   LightOptions light;
-  bool antialiasing = true;  ///< else colour, too, comes from the pixel's centre alone
+  bool antialiasing = true;  ///< if false, colour comes from the pixel's centre, too
 };
 
-/// Casts rays into a world. Depth and ids come from the ray through each pixel's centre half way
-/// through the exposure. Colour is averaged over the pixel and the exposure: from three rays where
-/// several surfaces show, else worked out on the one surface's plane. Immutable after construction,
-/// so that one renderer may serve several threads.
+/// Renders a world by ray tracing. Depth and ids come from the ray through each pixel's centre in
+/// the middle of the exposure. Colour is averaged over the pixel and the exposure: from three rays
+/// in pixels with several surfaces, else analytically on the plane of the one surface. Immutable
+/// after construction; safe to use from several threads.
 class Renderer {
  public:
-  /// `world` is not null. `camera` may be distorted.
+  /// `world` must not be null. `camera` may have distortion.
   Renderer(std::shared_ptr<const World> world,
            const CameraModel& camera,
            const RenderOptions& options = {});

@@ -9,14 +9,14 @@
 
 namespace stillmap {
 
-/// Rays through a pixel in camera coordinates, z = 1: its centre and its four quarters' centres, in
-/// rows.
+/// Rays through a pixel in camera coordinates, z = 1: through its centre and the centres of its
+/// four quarters, row by row.
 struct PixelRays {
   Eigen::Vector3f center;
   std::array<Eigen::Vector3f, 4> quarters;
 };
 
-/// A camera's place and axes at the times within an exposure at which colour is taken.
+/// The position and axes of a camera at the moments of an exposure at which colour is sampled.
 class MovingCamera {
  public:
   explicit MovingCamera(const Exposure& exposure);
@@ -26,7 +26,7 @@ class MovingCamera {
     Eigen::Vector3f origin;
     float time;
   };
-  /// When a pixel's quarters are taken.
+  /// The times of the quarters of a pixel.
   std::array<Moment, 4> quarters;
   Moment middle;
   Eigen::Vector3f translation;  ///< while the shutter is open
@@ -34,34 +34,34 @@ class MovingCamera {
   bool moves = false;
 };
 
-/// The colour of the piece of surface in a pixel, not yet lit; and where it is and faces.
+/// The unlit colour of the surface in a pixel, with its position and normal.
 struct SurfacePatch {
   Eigen::Vector3f albedo;  ///< red, green, blue in [0, 255]
   Eigen::Vector3f point;
   Eigen::Vector3f normal;  ///< of the smooth surface, towards the camera
 };
 
-/// What a pixel covers of a triangle's plane during an exposure: its middle on the picture, the
-/// steps from one quarter to the next, and how far the picture moves.
+/// The part of a triangle's plane that a pixel covers during an exposure: its centre on the
+/// texture, the steps from one quarter to the next, and the motion of the texture.
 class PixelSurface {
  public:
-  /// The arguments must outlive this.
+  /// The arguments must outlive the object.
   PixelSurface(const SurfaceTriangle& triangle,
                const Material& material,
                const MovingCamera& camera,
                const PixelRays& rays);
 
-  /// For a pixel all of which shows the plane during the whole exposure.
+  /// The patch of a pixel that shows only this plane during the whole exposure.
   [[nodiscard]] SurfacePatch whole() const;
 
-  /// What the pixel's centre shows of the plane half way through the exposure.
+  /// The patch at the pixel's centre in the middle of the exposure.
   [[nodiscard]] SurfacePatch center() const;
 
-  /// What quarter k of the pixel shows of the plane at its moment.
+  /// The patch at quarter k of the pixel at the moment of that quarter.
   [[nodiscard]] SurfacePatch quarter(std::size_t k) const;
 
  private:
-  /// What one ray shows of the plane, as it is at the ray's time.
+  /// The patch at one ray, with the plane at the time of the ray.
   [[nodiscard]] SurfacePatch patch_at(const TrianglePlane& plane,
                                       const PlaneMeeting& meeting) const;
 
@@ -76,7 +76,7 @@ class PixelSurface {
   float level_ = 0.F;
 };
 
-/// What a camera records of `albedo` in a light.
+/// The colour that a camera records of `albedo` under a light.
 [[nodiscard]] Eigen::Vector3f lit(const Eigen::Vector3f& albedo,
                                   const Material& material,
                                   float light);

@@ -11,7 +11,7 @@
 
 namespace stillmap {
 
-/// What the ray through a pixel's centre meets half way through the exposure.
+/// The surface at a pixel's centre in the middle of the exposure.
 struct Surfel {
   SurfaceHit hit;
   MaterialId material = 0;
@@ -19,8 +19,8 @@ struct Surfel {
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< of the triangle, towards the camera
 };
 
-/// Whether two points lie on one smooth piece of surface with one material: light and texture go
-/// on from one to the other without a break.
+/// Whether two points are on one smooth surface with one material, so that light and texture are
+/// continuous between them.
 [[nodiscard]] bool continuous(const Surfel& a, const Surfel& b);
 
 /// A row-major image of surfels.
@@ -40,8 +40,8 @@ struct SurfaceBuffer {
                                            const Eigen::Isometry3d& T_world_camera,
                                            const cv::Mat2f& rays);
 
-/// 255 where a pixel shows more than one smooth surface while the shutter is open, or may: along
-/// the edges between surfaces, widened by how far the image moves there.
+/// 255 where a pixel may show more than one smooth surface while the shutter is open: along the
+/// edges between surfaces, widened by the motion of the image there.
 [[nodiscard]] cv::Mat1b mixed_pixels(const SurfaceBuffer& surfaces,
                                      const RayScene& scene,
                                      const Exposure& exposure,

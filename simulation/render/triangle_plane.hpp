@@ -8,7 +8,7 @@
 
 namespace stillmap {
 
-/// A triangle's plane at one time, ready to be met by rays.
+/// The plane of a triangle at one time, prepared for intersection with rays.
 struct TrianglePlane {
   Eigen::Vector3f corner, edge_u, edge_v, normal;
   Eigen::Vector3f dual_u, dual_v;  ///< their products with a point's offset are its coordinates
@@ -31,7 +31,7 @@ struct TrianglePlane {
   }
 };
 
-/// Where a ray meets a triangle's plane; not held to the triangle.
+/// The intersection of a ray with the plane of a triangle; possibly outside the triangle.
 struct PlaneMeeting {
   Eigen::Vector3f direction;
   float inverse_along;  ///< 1 / (normal . direction)
@@ -49,8 +49,8 @@ struct PlaneMeeting {
     at = plane.coordinates(offset + t * direction);
   }
 
-  /// How far the meeting moves on the plane, to first order, when the point that the ray had here
-  /// moves by `step`.
+  /// The first-order motion of the intersection on the plane when the point of the ray here moves
+  /// by `step`.
   [[nodiscard]] Eigen::Vector2f shift(const TrianglePlane& plane,
                                       const Eigen::Vector3f& step) const {
     return plane.coordinates(step - plane.normal.dot(step) * inverse_along * direction);

@@ -11,37 +11,37 @@
 
 namespace stillmap {
 
-/// A thing's place over time.
+/// The pose of a thing over time.
 using ThingMotion = std::function<Eigen::Isometry3d(double t_s)>;
 
-/// Two hands on a thing.
+/// Two hands that hold a thing.
 struct Grip {
   ThingMotion T_world_thing;
-  std::array<Eigen::Vector3d, 2> palms_thing;  ///< where the left and the right palm hold it
+  std::array<Eigen::Vector3d, 2> palms_thing;  ///< positions of the left and the right palm on it
   double roll = 0;                             ///< of the palms, as in PalmGoal
   EasedTrack holds{{{0.0, 0.0}}};              ///< 1 while held, 0 while not
 };
 
-/// Somewhere to sit: the pelvis on the seat, the feet where the path is.
+/// A place to sit: the pelvis on the seat, the feet on the path.
 struct Seat {
   FloorPose pose;
   EasedTrack seated{{{0.0, 0.0}}};                 ///< 1 while seated
   std::array<double, 2> hands_height_m{0.1, 0.1};  ///< of the resting palms over the pelvis joint
 };
 
-/// What somebody does. Times of tracks are those of `loop`.
+/// The actions of a person. Times of tracks are those of `loop`.
 struct Role {
   FloorPath path;
   std::vector<Walk> walks{};
   std::optional<Seat> seat{};
   EasedTrack lean{{{0.0, 0.0}}};
-  EasedTrack crouch_m{{{0.0, 0.0}}};  ///< how much lower the pelvis is
+  EasedTrack crouch_m{{{0.0, 0.0}}};  ///< lowering of the pelvis
   EasedTrack head_yaw{{{0.0, 0.0}}};
   EasedTrack head_pitch{{{0.0, 0.0}}};
   EasedTrack talks{{{0.0, 0.0}}};  ///< 1: gestures and looks about
   std::vector<Grip> grips{};
-  double liveliness = 0;  ///< shifts the small movements against those of others
-  /// From its end on, the time from `start_s` to `end_s` is played again and again.
+  double liveliness = 0;  ///< phase of the small movements
+  /// From `end_s` on, the time from `start_s` to `end_s` repeats.
   struct Loop {
     double start_s;
     double end_s;
@@ -49,10 +49,10 @@ struct Role {
   std::optional<Loop> loop{};
 };
 
-/// Somebody with a role.
+/// A person with a role.
 class Actor {
  public:
-  /// `body` must outlive this.
+  /// `body` must outlive the actor.
   Actor(const Body& body, Role role);
 
   [[nodiscard]] BodyPose at(double t_s) const;

@@ -10,8 +10,8 @@
 
 namespace stillmap {
 
-/// A model that an archive's catalogue lists. Its file has x to the model's left, y up and z to its
-/// front, once turned by `rotation`.
+/// A model in the catalogue of an archive. After `rotation`, its file has x to the model's left, y
+/// up and z to its front.
 struct CatalogueEntry {
   std::string name;   ///< of the model's file, without folder and ending: "office_chair"
   std::string model;  ///< the archive's entry: "scopia/office_chair/office_chair.obj"
@@ -21,8 +21,8 @@ struct CatalogueEntry {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
 };
 
-/// A furniture library of Sweet Home 3D (*.sh3f): a zip file with models and a catalogue of them.
-/// What is wrong with the file is an Error that names it and the entry.
+/// A furniture library of Sweet Home 3D (*.sh3f): a zip file with models and their catalogue. All
+/// functions throw Error, naming the file and the entry, for a wrong file.
 class AssetArchive {
  public:
   /// Opens the archive and reads its catalogue.
@@ -30,14 +30,13 @@ class AssetArchive {
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
-  /// What the catalogue says of a model; an Error where it lists none of that name.
+  /// The catalogue entry of a model. Throws Error if there is none of that name.
   [[nodiscard]] const CatalogueEntry& model(const std::string& name) const;
 
   [[nodiscard]] bool contains(const std::string& entry) const;
 
-  /// The whole of an entry. An Error where there is none, where its name leads out of the archive,
-  /// where it is damaged, or where it says to be larger than `max_bytes`, before that much is
-  /// allocated.
+  /// The content of an entry. Throws Error for a missing or damaged entry, a name that leads out of
+  /// the archive, and a declared size over `max_bytes`, of which no more is allocated.
   [[nodiscard]] std::string read(const std::string& entry, std::size_t max_bytes) const;
 
   /// Names a part of the archive in messages.

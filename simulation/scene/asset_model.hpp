@@ -9,20 +9,19 @@
 
 namespace stillmap {
 
-/// A surface and what is on it.
+/// A surface with its materials.
 struct AssetModel {
   std::string name;
-  Mesh mesh;  ///< materials are places in `materials`
+  Mesh mesh;  ///< material ids are positions in `materials`
   MaterialLibrary materials;
 };
 
-/// A model of an archive (Wavefront OBJ with its materials and JPEG or PNG pictures) in the size
-/// that the catalogue gives: x to its front, y to its left, z up, its middle over the origin, its
-/// lowest point at z = 0. An Error names the archive and the entry where something is missing,
-/// damaged or too large.
+/// A model of an archive (Wavefront OBJ with its materials and JPEG or PNG pictures) in the size of
+/// the catalogue: x to its front, y to its left, z up, its middle over the origin, its lowest point
+/// at z = 0. Throws Error, naming archive and entry, for missing, damaged or too large parts.
 [[nodiscard]] AssetModel load_model(const AssetArchive& archive, const CatalogueEntry& entry);
 
-/// The model's surface for a world with these materials, to which its own are added.
+/// The surface of the model for a world with `materials`, to which those of the model are added.
 [[nodiscard]] Mesh add_model(const AssetModel& model, MaterialLibrary& materials);
 
 }  // namespace stillmap

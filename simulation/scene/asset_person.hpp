@@ -9,17 +9,17 @@
 
 namespace stillmap {
 
-/// A model of somebody and where the joints in it are.
+/// A model of a person with the positions of its joints.
 struct PersonAsset {
   AssetModel model;   ///< in the frame of the pelvis joint
-  Skeleton skeleton;  ///< as the model stands; its limbs may be bent
+  Skeleton skeleton;  ///< in the posture of the model; its limbs may be bent
 };
 
-/// The people of Sweet Home 3D's Reallusion library that can be made to walk and sit: those that
-/// stand, in trousers.
+/// The people of the Reallusion library of Sweet Home 3D that can walk and sit: those standing and
+/// in trousers.
 [[nodiscard]] std::vector<PersonAsset> load_people(const AssetArchive& archive);
 
-/// Somebody for a world with these materials, to which the model's are added.
+/// The person for a world with `materials`, to which those of the model are added.
 [[nodiscard]] Body make_person(const PersonAsset& asset, MaterialLibrary& materials);
 
 }  // namespace stillmap

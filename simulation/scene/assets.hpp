@@ -10,18 +10,18 @@
 
 namespace stillmap {
 
-/// People and furniture that somebody else made, for an office that looks more like a photograph.
+/// People and furniture of other authors, for an office that looks more like a photograph.
 struct Assets {
   std::vector<PersonAsset> people;  ///< none or more
   std::vector<AssetModel> chairs;   ///< none or more; in the frame of make_chair(), as high
-  std::string credits;              ///< whose they are and under which licence, in whole lines
+  std::string credits;              ///< authors and licences, in whole lines
 };
 
-/// Where the Debian package sweethome3d-furniture puts its files.
+/// The folder of the Debian package sweethome3d-furniture.
 inline constexpr const char* kFurnitureFolder = "/usr/share/sweethome3d/furniture";
 
-/// What is used of the furniture libraries in a folder; nothing where it has none of them. A
-/// library that is there but damaged is an Error.
+/// The assets of the furniture libraries in a folder; nothing if there is no library. Throws Error
+/// for a damaged library.
 [[nodiscard]] std::optional<Assets> installed_assets(
     const std::filesystem::path& folder = kFurnitureFolder);
 

@@ -9,7 +9,7 @@
 
 namespace stillmap {
 
-/// What people do in the office.
+/// The activity of the people in the office.
 enum class Activity {
   kNone,     ///< nobody is there
   kSitting,  ///< two people at their desks, who talk and gesture
@@ -23,11 +23,11 @@ void add_people(World& office,
                 std::uint32_t seed,
                 const Assets* assets = nullptr);
 
-/// Who and what is where at which time: continuous with continuous velocity, defined for t >= 0.
+/// The state of people and things over time, for t >= 0, with continuous velocities.
 class Choreography {
  public:
-  /// `office` holds the people that add_people() put there for the same activity; it must outlive
-  /// this.
+  /// `office` must have the people of add_people() for the same activity, and outlive the
+  /// choreography.
   Choreography(const World& office, Activity activity);
 
   [[nodiscard]] WorldState at(double t_s) const;

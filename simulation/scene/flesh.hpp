@@ -23,9 +23,9 @@ struct FleshPart {
   float blend_m = 0.03F;   ///< how widely it melts together with the others of its layer
 };
 
-/// What lies under a place on a surface.
+/// The solid near a position.
 struct FleshSample {
-  float distance = 0;  ///< to the surface, about; negative inside
+  float distance = 0;  ///< approximate distance to the surface; negative inside
   std::uint8_t layer = 0;
   std::uint8_t chart = 0;
 };

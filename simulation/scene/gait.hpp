@@ -10,14 +10,14 @@
 
 namespace stillmap {
 
-/// A stretch of time in which somebody takes steps.
+/// A time interval of walking.
 struct Walk {
   double start_s;
   double end_s;
 };
 
-/// Where the feet of somebody are who follows a path: a foot that bears weight rests where it came
-/// down; it rolls over the heel when it comes down and over the toes when it goes.
+/// The feet of a person who follows a path. A foot that bears weight rests where it was put down;
+/// it rolls over the heel when it comes down and over the toes when it lifts.
 class Footfalls {
  public:
   /// The path rests outside the walks. `half_width_m`: from the path's middle to each ankle.
@@ -46,8 +46,8 @@ class Footfalls {
   std::array<std::vector<Step>, 2> steps_;
 };
 
-/// Where somebody is who stands or walks: the pelvis as high as the legs allow, arms that swing
-/// against the feet.
+/// The posture of a person who stands or walks: the pelvis as high as the legs allow, arms swinging
+/// opposite to the feet.
 struct Stance {
   FloorPose root;
   std::array<Footfalls::Foot, 2> feet;

@@ -10,15 +10,15 @@
 
 namespace stillmap {
 
-/// What a surface looks like. A place (u, v) on the picture: (0, 0) is its top left corner, (1, 1)
-/// its bottom right one.
+/// The look of a surface. Texture coordinates (u, v): (0, 0) is the top left corner of the picture,
+/// (1, 1) the bottom right.
 struct Material {
   MipTexture texture;
   bool repeats = false;  ///< beyond [0, 1] the picture starts again; else its edge's colour goes on
   float glow = 0.F;      ///< least light that it seems to be in, in [0, 1]: screens, lamps
 };
 
-/// A place in a MaterialLibrary.
+/// A position in a MaterialLibrary.
 using MaterialId = std::uint32_t;
 
 /// The materials of a world.

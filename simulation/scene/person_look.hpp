@@ -13,7 +13,7 @@ inline constexpr int kHairStyles = 5;
 enum class Fabric { kPlain, kStripes, kChecks, kKnit, kPrint };
 inline constexpr int kFabrics = 5;
 
-/// What tells one person from another. Colours are red, green, blue.
+/// The looks of a person. Colours are red, green, blue.
 struct PersonLook {
   double height_m = 1.75;
   double girth = 1.0;     ///< of the trunk, against slim: 0.92 to 1.2
@@ -31,7 +31,7 @@ struct PersonLook {
   std::uint64_t paint_seed = 1;
 };
 
-/// Somebody at random: the same number gives the same person.
+/// A random person; the same number gives the same person.
 [[nodiscard]] PersonLook random_look(std::uint64_t seed);
 
 }  // namespace stillmap

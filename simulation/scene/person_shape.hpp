@@ -7,17 +7,17 @@
 
 namespace stillmap {
 
-/// What covers a person, as layers of Flesh.
+/// The clothes of a person, as layers of Flesh.
 enum class PersonLayer : std::uint8_t { kSkin, kShirt, kTrousers, kShoes, kHair };
 
-/// Which cylinder a part's pictures are wrapped round.
+/// The cylinder around which the pictures of a part are wrapped.
 enum class PersonChart : std::uint8_t { kTrunk, kLeftArm, kRightArm, kLeftLeg, kRightLeg, kHead };
 inline constexpr std::size_t kPersonCharts = 6;
 
-/// Where the joints are, standing with the arms 18 degrees off the trunk.
+/// The joints of a standing person, with the arms 18 degrees off the trunk.
 [[nodiscard]] Skeleton person_skeleton(const PersonLook& look);
 
-/// How high the pelvis joint of somebody is over the floor at rest.
+/// The height of the pelvis joint over the floor at rest.
 [[nodiscard]] double rest_pelvis_height(const PersonLook& look);
 
 /// The solid that person_skeleton() carries, in clothes; layers and charts as above.

@@ -7,9 +7,9 @@
 
 namespace stillmap {
 
-/// What the things of an office look like. Each picture is of the given size in metres and a
-/// function of its arguments alone; another seed gives other words, lines and tones, so that no two
-/// pictures of an office are equal.
+/// The pictures on the things of an office. Each has the given size in metres and depends on its
+/// arguments alone. Another seed gives other words, lines and tones, so that no two pictures of an
+/// office are equal.
 using PictureSeed = std::uint64_t;
 
 // The room.

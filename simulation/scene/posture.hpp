@@ -9,7 +9,7 @@ namespace stillmap {
 
 enum class BodySide : std::uint8_t { kLeft, kRight };
 
-/// How the trunk and head are held. Angles in radians; pitch forward and down, yaw and roll as of
+/// The posture of trunk and head. Angles in radians; pitch forward and down, yaw and roll as of
 /// a body that faces +x with z up: yaw to the left, roll to the right.
 struct TrunkPosture {
   Eigen::Isometry3d T_world_pelvis = Eigen::Isometry3d::Identity();
@@ -36,7 +36,7 @@ struct TrunkPosture {
                                 BodySide side,
                                 const Eigen::Isometry3d& T_world_ankle);
 
-/// Where a palm is wanted.
+/// The goal of a palm.
 struct PalmGoal {
   Eigen::Vector3d p_world = Eigen::Vector3d::Zero();
   double roll = 0;  ///< turns the palm from inwards (0) to downwards (pi / 2)
@@ -49,10 +49,10 @@ struct PalmGoal {
                                 BodySide side,
                                 const PalmGoal& goal);
 
-/// Where the middle of a palm is.
+/// The position of the middle of a palm.
 [[nodiscard]] Eigen::Vector3d palm_place(const Body& body, const BodyPose& pose, BodySide side);
 
-/// Where the palm of an arm is that hangs from the shoulder, swung forward by an angle.
+/// The position of the palm of an arm that hangs from the shoulder, swung forward by an angle.
 [[nodiscard]] Eigen::Vector3d hanging_palm(const Body& body,
                                            const BodyPose& pose,
                                            BodySide side,

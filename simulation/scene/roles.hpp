@@ -9,19 +9,19 @@
 
 namespace stillmap {
 
-/// A thing that somebody moves.
+/// A thing that a person moves.
 struct ThingRole {
   std::string thing;
   ThingMotion T_world_thing;
 };
 
-/// Who does what: one role a person, in the order of their numbers.
+/// The roles, one per person in the order of their numbers, and the things that they move.
 struct Play {
   std::vector<Role> roles;
   std::vector<ThingRole> things;
 };
 
-/// The thing of that name; an Error where the world has none.
+/// The thing of that name. Throws Error if the world has none.
 [[nodiscard]] const Thing& thing_named(const World& world, const std::string& name);
 
 /// Two people who talk at their desks.

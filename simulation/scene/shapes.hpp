@@ -11,7 +11,7 @@
 
 namespace stillmap {
 
-/// What covers a face of a shape.
+/// The covering of a face of a shape.
 struct Surface {
   MaterialId material = 0;
   double tile_m = 0;  ///< > 0: the picture repeats each so many metres; 0: it covers the face once
@@ -23,7 +23,7 @@ using BoxSurfaces = std::array<Surface, 6>;
 
 [[nodiscard]] BoxSurfaces all_faces(const Surface& surface);
 
-/// How the edges of a box are rounded.
+/// The rounding of the edges of a box.
 struct Rounding {
   double radius = 0;   ///< metres, at most half of the box's shortest side
   int edge_steps = 1;  ///< 1: a bevel

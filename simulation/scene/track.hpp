@@ -29,7 +29,7 @@ class EasedTrack {
   std::vector<Key> keys_;
 };
 
-/// Where something stands on the floor and which way it faces.
+/// A position and a direction on the floor.
 struct FloorPose {
   Eigen::Vector2d position = Eigen::Vector2d::Zero();
   double yaw = 0;
@@ -50,7 +50,7 @@ struct FloorPose {
   }
 };
 
-/// Somewhere on a path at a time. Without a yaw, it faces where it goes.
+/// A point of a path at a time. Without a yaw, the direction is that of the path.
 struct PathKey {
   double t_s;
   double x;

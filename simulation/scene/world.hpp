@@ -16,13 +16,13 @@ namespace stillmap {
 /// A rigid object. World axes: z up, the floor at z = 0.
 struct Thing {
   std::string name;        ///< unique in its world: "chair_1", "desk_2"
-  std::string class_name;  ///< of COCO where that has one, else a plain word: "box", "wall"
+  std::string class_name;  ///< the COCO name if there is one, else a plain word: "box", "wall"
   std::uint8_t id = 0;     ///< in masks: 10 to 99 for what may be moved, 0 for all else
   Mesh mesh;               ///< in the thing's own frame
-  Eigen::Isometry3d T_world_thing = Eigen::Isometry3d::Identity();  ///< where it stands at first
+  Eigen::Isometry3d T_world_thing = Eigen::Isometry3d::Identity();  ///< initial pose
 };
 
-/// Somebody.
+/// A person.
 struct Person {
   std::string name;     ///< "person_1"
   std::uint8_t id = 0;  ///< in masks: 1 to 9
@@ -37,7 +37,7 @@ struct AreaLamp {
   double power = 1.0;  ///< light on a surface that faces it from 1 m away
 };
 
-/// Everything that there is to see.
+/// The scene: everything that is visible.
 struct World {
   MaterialLibrary materials;
   std::vector<Thing> things;
@@ -46,9 +46,9 @@ struct World {
   double ambient = 0.35;  ///< light that comes from everywhere
 };
 
-/// Where all that moves is at one time.
+/// The poses of everything at one time.
 struct WorldState {
-  std::vector<Eigen::Isometry3d> T_world_things;  ///< of World::things, those at rest included
+  std::vector<Eigen::Isometry3d> T_world_things;  ///< of all World::things
   std::vector<BodyPose> people;                   ///< of World::people
 };
 

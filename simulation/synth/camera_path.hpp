@@ -15,7 +15,7 @@ enum class PathKind {
   kLoop,        ///< around the room's middle, looking outwards; one round in loop_period_s()
 };
 
-/// Seconds that one round of PathKind::kLoop takes; the path then repeats exactly.
+/// The duration of one round of PathKind::kLoop, seconds. The path repeats exactly after it.
 [[nodiscard]] double loop_period_s();
 
 /// The camera's pose at a time; infinitely smooth in time, defined for every finite `t_s`.

@@ -13,16 +13,16 @@
 
 namespace stillmap {
 
-/// An object that may be seen in a frame.
+/// An object that may be visible in a frame.
 struct VisibleObject {
   int id = 0;  ///< in the mask
   std::string class_name;
   PixelBox box;              ///< tight around its pixels
-  int pixels = 0;            ///< how many show it; 0 is allowed
+  int pixels = 0;            ///< number of its pixels; 0 is allowed
   double visible_share = 1;  ///< of the object within the image's borders, see share_in_view()
 };
 
-/// What is truly in a frame.
+/// The true objects of a frame.
 struct FrameTruth {
   FrameId frame;
   Stamp stamp;
@@ -30,40 +30,41 @@ struct FrameTruth {
   std::vector<VisibleObject> objects;
 };
 
-/// What a network without fault says: every object of a class of COCO that has pixels, with its own
-/// id, its very mask and box, score 1. What COCO has no class for (a carton) no network reports.
+/// The detections of a perfect network: every visible object of a COCO class, with its id, its
+/// exact mask and box, and score 1. Objects without a COCO class (a carton) are not detected.
 [[nodiscard]] FrameDetections perfect_detections(const FrameTruth& truth);
 
-/// How badly a network sees. Lengths in pixels are those of an image 640 wide and scale with it.
+/// The faults of a network. Lengths in pixels refer to an image 640 wide and scale with the image.
 struct DetectionFaultOptions {
-  double edge_loss_px = 2.0;    ///< mean width of what masks lack along their edges
-  double edge_wander_px = 2.5;  ///< how far the edge wanders about that mean, outwards too
+  double edge_loss_px = 2.0;    ///< mean width of the rim that masks lack
+  double edge_wander_px = 2.5;  ///< greatest deviation of the rim from that mean, outwards, too
   double limb_loss = 0.45;    ///< chance that a mask lacks one of its ends: a leg, an arm, the head
   double leak = 0.4;          ///< chance that a blob of the background is added to a mask
-  double box_shift_px = 4.0;  ///< at most, of each side of a box
-  double miss_rate = 0.065;   ///< share of frames in which an object is overlooked, at most 0.18
-  double min_pixels = 600;    ///< smaller objects are always overlooked; for 640x480 pixels
-  double min_visible_share = 0.5;  ///< objects with less of them in the image, too
-  double duplicate_rate = 0.03;    ///< chance that an object is reported once more, as a mere box
-  double false_rate = 0.03;        ///< chance of an object where there is none
+  double box_shift_px = 4.0;  ///< greatest shift of each side of a box
+  double miss_rate = 0.065;   ///< share of frames in which an object is missed, at most 0.18
+  double min_pixels = 600;    ///< smaller objects are always missed; at 640x480
+  double min_visible_share = 0.5;  ///< objects with a smaller visible share are always missed
+  /// chance that an object is detected a second time, as a box without mask
+  double duplicate_rate = 0.03;
+  double false_rate = 0.03;  ///< chance of a false detection
 };
 
-/// Makes of the truth what an imperfect network would report: the objects of perfect_detections()
-/// with the options' faults; ids count from 1 in the order of scores and say nothing of the
-/// truth's. A lost limb, a leak or a false object stays for some frames, an object is overlooked
-/// for one to three frames in a row. What is reported is a function of seed, truth and options
-/// alone: frames may come in any order. Safe to use from several threads.
+/// Turns truth into the detections of an imperfect network: the objects of perfect_detections()
+/// with faults. Ids count from 1 in the order of scores and are unrelated to the true ids. A lost
+/// limb, a leak or a false object persists for some frames; an object is missed for one to three
+/// consecutive frames. The result depends on seed, truth and options alone, so that frames may come
+/// in any order. Safe to use from several threads.
 class DetectionFaults {
  public:
   explicit DetectionFaults(std::uint32_t seed, const DetectionFaultOptions& options = {});
 
   [[nodiscard]] FrameDetections apply(const FrameTruth& truth) const;
 
-  /// Whether an object is overlooked in a frame for no reason that can be seen.
+  /// Whether an object is missed in a frame at random.
   [[nodiscard]] bool overlooked(int id, FrameId frame) const;
 
  private:
-  struct Report;  // a detection on its way
+  struct Report;  // a detection in the making
   [[nodiscard]] bool too_hard(const VisibleObject& object, const FrameTruth& truth) const;
   [[nodiscard]] std::vector<Report> reports_of(const VisibleObject& object,
                                                const FrameTruth& truth) const;

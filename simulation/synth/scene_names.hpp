@@ -11,17 +11,17 @@
 
 namespace stillmap {
 
-/// A scene that `stillmap synth` knows by name.
+/// A named scene.
 struct NamedScene {
   PathKind path = PathKind::kXyz;
   Activity activity = Activity::kNone;
-  std::size_t frames = 0;  ///< as many as it takes to see all of it at 30 a second
+  std::size_t frames = 0;  ///< number of frames of the whole scene at 30 per second
 };
 
-/// Names of all scenes.
+/// The names of all scenes.
 [[nodiscard]] std::vector<std::string> scene_names();
 
-/// The scene of a name. Throws Error, with the nearest name, for one that is unknown.
+/// The scene `name`. Throws Error, with a hint at the nearest name, for an unknown name.
 [[nodiscard]] NamedScene named_scene(std::string_view name);
 
 }  // namespace stillmap

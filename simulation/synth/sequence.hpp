@@ -17,8 +17,8 @@
 
 namespace stillmap {
 
-/// A camera like TUM's fr3, without distortion, for images of another size: the field of view
-/// across stays, the optical centre keeps its place. Stored depth: 5000 units a metre.
+/// A camera like fr3 of TUM, without distortion, for images of another size, with the same
+/// horizontal field of view and relative optical centre. Stored depth has 5000 units per metre.
 [[nodiscard]] CameraModel synthetic_camera(int width_px, int height_px);
 
 struct SyntheticOptions {
@@ -27,31 +27,30 @@ struct SyntheticOptions {
   CameraModel camera = synthetic_camera(640, 480);
   std::size_t frames = 300;
   double frames_per_second = 30.0;
-  std::uint32_t seed = 0;  ///< of the pictures on things, the people's clothes, the sensor's noise
-  std::shared_ptr<const Assets> assets;  ///< people and furniture to use; null: none
+  std::uint32_t seed = 0;                ///< seed of pictures, clothes and sensor noise
+  std::shared_ptr<const Assets> assets;  ///< people and furniture; null: none
   RenderOptions render;                  ///< effects of light
-  SensorOptions sensor;                  ///< a Kinect's effects unless SensorOptions::clean()
+  SensorOptions sensor;                  ///< faults of a Kinect unless SensorOptions::clean()
 };
 
-/// A frame as the sensor gives it, and the truth about it.
+/// A frame of the sensor with its truth.
 struct SyntheticFrame {
   FramePtr frame;
   RenderedImage truth;  ///< without the sensor's faults
 };
 
-/// The corners of something that can move, where it is at one time.
+/// The vertices of a movable object at one time.
 struct MovableSurface {
   std::uint8_t id = 0;
   std::vector<Eigen::Vector3f> p_world;
 };
 
-/// The surfaces of all that can move: things by their order in the world, then people.
+/// The surfaces of all movable objects: things in the order of the world, then people.
 [[nodiscard]] std::vector<MovableSurface> movable_surfaces(const World& world,
                                                            const WorldState& state);
 
-/// A sequence in the office of make_office() along a path, with exact truth. Frames are rendered
-/// when asked for; asking for the same frame twice gives equal bytes. Safe to use from several
-/// threads.
+/// A sequence along a path in the office of make_office(), with exact truth. Frames are rendered on
+/// demand; the same frame always has the same bytes. Safe to use from several threads.
 class SyntheticSequence {
  public:
   explicit SyntheticSequence(const SyntheticOptions& options);
@@ -61,27 +60,27 @@ class SyntheticSequence {
   [[nodiscard]] const SyntheticOptions& options() const { return options_; }
   [[nodiscard]] const World& world() const { return *world_; }
 
-  /// Frame `id`, which is below size(). Its depth is taken at the same time as its colour.
+  /// Frame `id`, which must be below size(). Depth and colour have the same time.
   [[nodiscard]] SyntheticFrame render(FrameId id) const;
   [[nodiscard]] FramePtr frame(FrameId id) const { return render(id).frame; }
 
-  /// When frame `id` was taken (the middle of its exposure); six decimals, the first at 1000 s.
+  /// The stamp of frame `id`, the middle of its exposure, with six decimals. The first is 1000 s.
   [[nodiscard]] Stamp stamp(FrameId id) const;
 
-  /// The true pose of frame `id`, in the office's coordinates.
+  /// The true pose of frame `id` in the coordinates of the office.
   [[nodiscard]] Eigen::Isometry3d pose(FrameId id) const;
 
-  /// stamp() and pose() of every frame.
+  /// The stamps and poses of all frames.
   [[nodiscard]] Trajectory ground_truth() const;
 
-  /// Where everything is in frame `id`.
+  /// The state of the world in frame `id`.
   [[nodiscard]] WorldState state(FrameId id) const;
 
-  /// How fast what can move is in frame `id`, as the mean over its corners; in the order of
+  /// The speeds of the movable objects in frame `id`, as means over their vertices, in the order of
   /// movable_surfaces().
   [[nodiscard]] std::vector<ObjectSpeed> speeds(FrameId id) const;
 
-  /// The ids of what moves in any frame, ascending.
+  /// The ids of the objects that move in any frame, ascending.
   [[nodiscard]] std::vector<int> moved_ids() const;
 
  private:

@@ -9,24 +9,23 @@
 
 namespace stillmap {
 
-/// Which folder of detections to make from the truth.
+/// The kind of detections that are made from the truth.
 enum class DetectionKind {
   kNone,
   kPerfect,    ///< the truth itself
-  kImperfect,  ///< with a network's faults, see DetectionFaults
+  kImperfect,  ///< the truth with the faults of a network, see DetectionFaults
 };
 
 struct WriteOptions {
-  std::size_t threads = 1;  ///< that render, at least 1; the files do not depend on it
+  std::size_t threads = 1;  ///< number of rendering threads, at least 1; files do not depend on it
   DetectionKind detections = DetectionKind::kNone;
 };
 
 /// Writes a sequence in the layout of the TUM RGB-D benchmark, with PNG images, associations.txt,
-/// camera.yaml, groundtruth.txt, the folder truth/ and, where asked for, detections/;
-/// where assets are used, assets.txt says whose they are.
-/// `on_progress`, where given, is called with the number of frames done and of all. Throws Error
-/// for a folder that holds something already, and when anything cannot be written; the lists come
-/// last, so that a folder with rgb.txt is complete.
+/// camera.yaml, groundtruth.txt, the folder truth/ and, on request, detections/. If assets are
+/// used, assets.txt credits their authors. `on_progress`, unless empty, is called with the numbers
+/// of finished and of all frames. Throws Error for a folder that is not empty, and when writing
+/// fails. The lists are written last, so that a folder with rgb.txt is complete.
 void write_sequence(const SyntheticSequence& sequence,
                     const std::filesystem::path& folder,
                     const WriteOptions& options = {},

@@ -14,17 +14,17 @@
 
 namespace stillmap {
 
-/// Thins points of surfaces to one a voxel: of those added the one nearest to the voxel's centre,
-/// the first of equals, unchanged. Voxel i along an axis covers [i, i + 1) * voxel_size_m.
+/// Thins points of surfaces to one per voxel: the added point nearest to the voxel's centre,
+/// unchanged; the first among equals. Voxel i along an axis covers [i, i + 1) * voxel_size_m.
 class SurfaceVoxels {
  public:
-  /// Edge of a voxel, finite and > 0.
+  /// `voxel_size_m` is the edge of a voxel, finite and > 0.
   explicit SurfaceVoxels(double voxel_size_m);
 
-  /// The point is finite and less than 2^20 voxels from the origin along each axis.
+  /// The point must be finite and less than 2^20 voxels from the origin along each axis.
   void add(const Eigen::Vector3f& position, const Rgb& color);
 
-  /// How many voxels hold a point.
+  /// The number of voxels with a point.
   [[nodiscard]] std::size_t size() const { return points_.size(); }
 
   /// The points, ordered by their voxels' x, then y, then z.
@@ -37,7 +37,8 @@ class SurfaceVoxels {
     float distance;  // squared, from the voxel's centre, in voxels
     Rgb color;
   };
-  // Voxels of a surface lie together, so that cubes of them are looked up, and mostly the last one.
+  // Voxels of a surface are close together, so that blocks of them are looked up, mostly the last
+  // one.
   static constexpr int kBlockSide = 8;
   using Block = std::array<std::uint32_t, kBlockSide * kBlockSide * kBlockSide>;  // 0 or 1 + index
 
@@ -51,7 +52,7 @@ class SurfaceVoxels {
   Block* last_block_ = nullptr;
 };
 
-/// The points of `cloud` that are farther than `clearance_m` from every point of `others`, in their
+/// The points of `cloud` that are farther than `clearance_m` from every point of `others`, in
 /// order.
 [[nodiscard]] PointCloud points_clear_of(const PointCloud& cloud,
                                          const PointCloud& others,

@@ -7,8 +7,8 @@
 
 namespace stillmap {
 
-/// The threads of a system's stages, with one owner. Without threads every pointer is null and jobs
-/// run inline.
+/// The only owner of the threads of a system's stages. Without threads every pointer is null and
+/// jobs run inline.
 class Workers {
  public:
   explicit Workers(bool threaded) {
@@ -23,7 +23,7 @@ class Workers {
   [[nodiscard]] Worker* dense() { return pointer(dense_); }
 
   /// Drops the jobs that have not begun and waits for those that run. To be called before the
-  /// stages that jobs refer to are destroyed.
+  /// stages to which jobs refer are destroyed.
   void join() {
     mapping_.reset();
     dense_.reset();

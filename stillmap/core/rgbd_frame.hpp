@@ -22,12 +22,13 @@ struct RgbdFrame {
 
 using FramePtr = std::shared_ptr<const RgbdFrame>;
 
-/// A frame of images of equal size, taken at one time: `color` in the order red, green, blue, depth
-/// in metres along the optical axis, 0 where it is missing. The images are shared, not copied. Its
-/// id is not set: a System then counts the frames itself. Throws Error for images of unequal size.
+/// Makes a frame of two images of equal size, taken at one time: `color` in the order red, green,
+/// blue, `depth` in metres along the optical axis, 0 where it is missing. Images are shared, not
+/// copied. The id is not set: a System then counts frames itself. Throws Error for images of
+/// unequal size.
 [[nodiscard]] RgbdFrame make_frame(double stamp_s, ColorImage color, DepthImage depth);
 
-/// Brightness, by the weights of ITU-R BT.601.
+/// The brightness of a colour image, by the weights of ITU-R BT.601.
 [[nodiscard]] GrayImage to_gray(const ColorImage& color);
 
 }  // namespace stillmap

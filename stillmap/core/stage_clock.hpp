@@ -10,11 +10,12 @@
 
 namespace stillmap {
 
-/// Wall-clock times of the stages of one frame. For reports only: no result depends on them.
+/// Measures the wall-clock times of the stages of one frame. For reports only: no result depends on
+/// them.
 class StageClock {
  public:
-  /// Runs a stage and passes on its result. `before_ms` is added: the time of its part that was
-  /// done ahead.
+  /// Runs a stage and returns its result. `before_ms`, the time of the part that was done ahead, is
+  /// added to its time.
   template <class Work>
   decltype(auto) time(std::string_view stage, double before_ms, const Work& work) {
     const Scope scope{*this, stage, before_ms};
@@ -25,7 +26,7 @@ class StageClock {
     return time(stage, 0.0, work);
   }
 
-  /// Of all stages so far.
+  /// The time of all stages so far.
   [[nodiscard]] double total_ms() const {
     double sum = 0;
     for (const StageTime& time : times_) sum += time.ms;

@@ -9,21 +9,21 @@ namespace stillmap {
 enum class TrackingStatus : std::uint8_t {
   kInitialized,  ///< the first frame of a submap: its camera is the submap's origin
   kTracked,
-  kRelocalized,  ///< found again after having been lost
-  kLost,         ///< no pose; the frame is marked, nothing is invented
+  kRelocalized,  ///< a pose was found again after a loss
+  kLost,         ///< no pose
 };
 
-/// The verdict on a feature off the masks. Where several hold, the first of kDynamic,
-/// kUnstableDepth, kMissingDepth, kStaticInBox, kStable is given.
+/// The verdict of the filter on a feature off the masks. If several apply, it is the first of
+/// kDynamic, kUnstableDepth, kMissingDepth, kStaticInBox, kStable.
 enum class FeatureVerdict : std::uint8_t {
   kStable,
   kMissingDepth,   ///< a pixel around it has no depth
-  kUnstableDepth,  ///< depth changes suddenly around it
-  kDynamic,        ///< in the box of a dynamic object, and not seen to stand still
-  kStaticInBox,    ///< in such a box, and seen to stand still
+  kUnstableDepth,  ///< the depth around it varies too much
+  kDynamic,        ///< in the box of a dynamic object and not a static match
+  kStaticInBox,    ///< in the box of a dynamic object and a static match
 };
 
-/// Wall-clock time of one stage's work on a frame.
+/// The wall-clock time of one stage's work on a frame.
 struct StageTime {
   std::string_view stage;  ///< refers to a literal
   double ms = 0;

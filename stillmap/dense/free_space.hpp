@@ -90,8 +90,8 @@ struct PosedRange {
 struct Sightings {
   std::uint8_t seen = 0;    ///< views that measure the point
   std::uint8_t moving = 0;  ///< views that measure a moving object at the point
-  std::uint8_t beside =
-      0;  ///< views with a moving object beside the point; weakly seen points only
+  /// views with a moving object beside the point; weakly seen points only
+  std::uint8_t beside = 0;
   std::uint8_t through = 0;       ///< views that see through the point
   std::uint8_t seen_last = 0;     ///< views that measure it after the last one that sees through it
   std::uint8_t through_last = 0;  ///< views that see through it after the last one that measures it

@@ -43,8 +43,8 @@ class VoxelGrid {
  private:
   struct Voxel {
     std::uint64_t key = 0;
-    Eigen::Vector3f offset_sum =
-        Eigen::Vector3f::Zero();  ///< from the corner of the voxel, in voxels
+    /// from the corner of the voxel, in voxels
+    Eigen::Vector3f offset_sum = Eigen::Vector3f::Zero();
     std::array<std::uint32_t, 3> color_sum{};
     LabelVote labels;
     std::uint16_t weight = 0;

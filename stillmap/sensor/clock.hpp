@@ -3,8 +3,8 @@
 
 namespace stillmap {
 
-/// What a live run goes by. The library never waits for time to pass by itself: whoever runs it
-/// live brings the clock.
+/// The clock of a live run. The library has no clock of its own: the caller of a live run provides
+/// it.
 class Clock {
  public:
   Clock() = default;
@@ -12,7 +12,7 @@ class Clock {
   Clock& operator=(const Clock&) = delete;
   virtual ~Clock() = default;
 
-  /// Seconds since some moment; never goes back.
+  /// Seconds since a fixed time; never decreases.
   [[nodiscard]] virtual double now_s() = 0;
   virtual void wait_until_s(double time_s) = 0;
 };

@@ -15,12 +15,13 @@
 #include "stillmap/core/error.hpp"
 #include "stillmap/core/random.hpp"
 #include "stillmap/dense/voxel_grid.hpp"
+#include "stillmap/geometry/ransac.hpp"
 #include "tooling/export/voxel_walk.hpp"
 
 namespace stillmap {
 namespace {
 
-constexpr double kThinnedM = 0.05;  // so that points count surface, not how often it was seen
+constexpr double kThinnedM = 0.05;  // points then measure surface, not the number of views of it
 constexpr double kAreaCellM = 0.1;
 constexpr std::size_t kMinAreaCells = 50;  // half a square metre
 constexpr double kPatchM = 0.2;
@@ -39,7 +40,7 @@ constexpr int kRefinements = 5;
 
 using Points = std::vector<Eigen::Vector3d>;
 
-// What the cameras say of a plane: where up is, and that they are above it.
+// The evidence of the cameras about a plane: the direction up, and that they are above it.
 class CameraEvidence {
  public:
   explicit CameraEvidence(std::span<const Eigen::Isometry3d> T_world_camera)
@@ -90,10 +91,10 @@ PlaneFit fit_plane(const Points& points) {
   return fit;
 }
 
-// The map in the view of who looks for a floor.
+// The map, prepared for the search of the floor.
 struct Surface {
   Points all;
-  Points level;    // those on flat patches that may be floor
+  Points level;    // points on flat patches that may be floor
   Points normals;  // of their patches
 };
 
@@ -129,8 +130,8 @@ FloorPlane refined(const FloorPlane& plane, const Surface& surface) {
   return {up, -up.dot(fit.mean)};
 }
 
-// The plane's surface in cells with points in them and in all cells round them: the line where a
-// wall ends, or where the plane cuts through one, has none.
+// The area of the plane: cells with points whose neighbours all have points. The foot of a wall, or
+// the line where the plane cuts through one, has no such cells.
 std::size_t inner_cells(const FloorPlane& plane, const Surface& surface) {
   const Eigen::Vector3d u = plane.up.unitOrthogonal();
   const Eigen::Vector3d v = plane.up.cross(u);
@@ -175,7 +176,7 @@ struct Candidate {
   FloorPlane plane;
 };
 
-// Planes through three level points, those with the most of these on them first.
+// Planes through three level points, those with the most level points on them first.
 std::vector<Candidate> draw_candidates(const Surface& surface, const CameraEvidence& cameras) {
   std::mt19937 rng = rng_for(0, FrameId{0}, RandomPurpose::kFloorPlane);
   const auto draw = [&](const Points& points) {
@@ -189,10 +190,10 @@ std::vector<Candidate> draw_candidates(const Surface& surface, const CameraEvide
   }
   std::vector<Candidate> candidates;
   for (int i = 0; i < kDraws; ++i) {
-    const Eigen::Vector3d& a = surface.level[draw(surface.level)];
-    const Eigen::Vector3d& b = surface.level[draw(surface.level)];
-    const Eigen::Vector3d& c = surface.level[draw(surface.level)];
-    const std::optional<FloorPlane> plane = plane_through(a, b, c);
+    const Sample<3> sample =
+        draw_with_replacement<3>(rng, static_cast<std::uint32_t>(surface.level.size()));
+    const std::optional<FloorPlane> plane =
+        plane_through(surface.level[sample[0]], surface.level[sample[1]], surface.level[sample[2]]);
     const std::optional<FloorPlane> floor = plane ? cameras.as_floor(*plane) : std::nullopt;
     if (!floor || too_much_below(*floor, part_of_all)) continue;
     const auto on = std::ranges::count_if(

@@ -51,8 +51,8 @@ class VoxelBlocks {
 
   std::map<Key, std::vector<T>> blocks_;
   Key last_key_{};
-  std::vector<T>* last_ =
-      nullptr;  // block of last_key_; neighbours are mostly used one after the other
+  // block of last_key_; neighbours are mostly used one after the other
+  std::vector<T>* last_ = nullptr;
 };
 
 }  // namespace stillmap

@@ -48,8 +48,8 @@ class VoxelWalk {
   Eigen::Vector3i at_;
   Eigen::Vector3i left_;
   Eigen::Vector3i step_ = Eigen::Vector3i::Zero();
-  Eigen::Vector3d next_ =
-      Eigen::Vector3d::Zero();  // position on the line of the next step of each axis
+  // position on the line of the next step of each axis
+  Eigen::Vector3d next_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d width_ = Eigen::Vector3d::Zero();  // distance between two steps of each axis
 };
 

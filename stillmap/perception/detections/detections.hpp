@@ -32,8 +32,8 @@ struct DetectedObject {
   bool operator==(const DetectedObject&) const = default;
 };
 
-/// Whose pixel is whose: 8 bits, the id of an object, or 0 where there is none. Like the images of
-/// core/images.hpp, never written to by whoever is given one.
+/// The object of each pixel: 8 bits, the id of an object, or 0. Like the images of core/images.hpp,
+/// it is never written to by a function that was given one.
 struct ObjectMask {
   cv::Mat1b mat;
   ObjectMask() = default;

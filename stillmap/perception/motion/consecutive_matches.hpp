@@ -12,13 +12,14 @@
 namespace stillmap {
 
 /// Matches the features of a frame (queries) to those of the next by appearance, within `radius_px`
-/// of where they would be if they stood still under `T_current_previous`. Without it the camera is
-/// taken to stand still too. Depth is not asked to agree: what moves is wanted as well.
+/// of their static reprojection under `T_current_previous`; without it the camera counts as static.
+/// Depths need not agree, so that moving points are matched, too.
 [[nodiscard]] std::vector<FeatureMatch> match_consecutive(
     const Features& previous,
     const Features& current,
     const CameraModel& camera,
     const std::optional<Eigen::Isometry3d>& T_current_previous,
-    double radius_px);
+    double radius_px,
+    const MatchRules& rules);
 
 }  // namespace stillmap

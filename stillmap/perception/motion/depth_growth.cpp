@@ -35,7 +35,7 @@ float first_known(float a, float b, float c, float d) {
   return a > 0 ? a : later;
 }
 
-// What follows is without branches, so that it runs on vectors.
+// The following is branch-free, so that it vectorises.
 
 STILLMAP_VECTOR_CLONES
 void first_depths(const PixelRows& rows, std::size_t cells, float* __restrict depth) {
@@ -93,7 +93,7 @@ struct MeasuredRow {
   const std::uint8_t* ids;
 };
 
-/// Of the cells that the pixels are in.
+/// A row of cells, for the pixels in it.
 struct CellRow {
   const float *depth, *reach;
 };
@@ -268,7 +268,8 @@ class GrowthGrid {
                            object_.mask.mat[y] + x0_,
                            object_.mask.mat[y1] + x0_,
                            object_.depth.mat.cols - x0_};
-    const float* known = rule_.known_static.empty() ? nullptr : rule_.known_static.mat[y / 2] + x0_ / 2;
+    const float* known =
+        rule_.known_static.empty() ? nullptr : rule_.known_static.mat[y / 2] + x0_ / 2;
     const auto columns = static_cast<std::size_t>(columns_);
     first_depths(pixels, columns, row_depth_.data());
     find_ids(pixels, static_cast<std::uint8_t>(object_.id), columns, row_mask_.data());

@@ -55,7 +55,7 @@ std::optional<float> greatest_around(const cv::Mat1f& cells, int row, int column
   return known >= kEnoughKnown ? std::optional(greatest) : std::nullopt;
 }
 
-/// How much a depth must change to be a jump.
+/// The least change of depth that is a jump.
 struct JumpLimit {
   float base_m, per_m;
   [[nodiscard]] float at(float z) const { return base_m + per_m * z * z; }

@@ -16,12 +16,12 @@ namespace stillmap {
 
 /// The value of a pixel of a JumpImage.
 enum DepthJump : std::uint8_t {
-  kNoJump = 0,       ///< as before, or missing now or before
-  kCameNearer = 1,   ///< something stands where there was nothing
-  kWentFarther = 2,  ///< what stood there is gone
+  kNoJump = 0,       ///< unchanged, or depth is missing now or before
+  kCameNearer = 1,   ///< surface appeared in front of the earlier surface
+  kWentFarther = 2,  ///< the earlier surface is gone
 };
 
-/// Where depth has changed suddenly: a DepthJump for each pixel of an image.
+/// The depth jumps of an image: a DepthJump for each pixel.
 struct JumpImage {
   cv::Mat1b mat;
   JumpImage() = default;
@@ -37,46 +37,55 @@ struct DepthJumpConfig {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("enabled", self.enabled, FieldInfo{"remove what suddenly has another depth"});
+    visit("enabled", self.enabled, FieldInfo{"whether depth jumps are removed"});
     visit("jump_m",
           self.jump_m,
-          FieldInfo{"change of depth against the warped frame before, besides noise", "m", 0, 100});
+          FieldInfo{"full: difference from the warped earlier depth that makes a jump, in addition "
+                    "to noise",
+                    "m",
+                    0,
+                    100});
     visit("jump_per_m",
           self.jump_per_m,
-          FieldInfo{"growth of that change with depth squared", "1/m", 0, 10});
+          FieldInfo{"full: growth of jump_m with depth squared", "1/m", 0, 10});
     visit("revealed",
           self.revealed,
-          FieldInfo{"also remove what came into view behind something that left"});
+          FieldInfo{"full: whether background revealed by a departing object is removed, too"});
     visit("paper_jump_m",
           self.paper_jump_m,
-          FieldInfo{"paper: change of depth at a pixel (tau2 of Fan 2020)", "m", 0, 100});
+          FieldInfo{"paper: difference from the previous frame at the same pixel that makes a jump "
+                    "(tau2 of Fan 2020)",
+                    "m",
+                    0,
+                    100});
   }
 };
 
-/// Fan 2020, Eqs. (6)-(7): where the depth of a pixel differs from that of the same pixel before by
-/// more than `jump_m`, whatever the camera did in between. Missing depth is no jump.
+/// The pixels whose depth differs by more than `jump_m` from that of the same pixel in the previous
+/// frame, without regard to the motion of the camera (Fan 2020, section III-A, Eqs. (6)-(7)).
+/// Missing depth is no jump.
 [[nodiscard]] JumpImage depth_jumps(const DepthImage& current,
                                     const DepthImage& previous,
                                     double jump_m);
 
-/// `depth` where it knows something, else `other`. Both of the same camera. May write to the pixels
-/// of `depth`, which is taken over.
+/// `depth` where it is known, else `other`. Both are of the same camera. Reuses the pixels of
+/// `depth`.
 [[nodiscard]] HalfDepth filled_from(HalfDepth depth, const HalfDepth& other);
 
-/// Warps depth images of a camera, distortion included, from one pose of it to another.
+/// Warps depth images of a camera from one pose to another, distortion included.
 class DepthWarper {
  public:
   explicit DepthWarper(const CameraModel& camera);
 
-  /// The depth of the nearest measured point of `previous` at each cell. The pixels of `excluded`
-  /// are left out. `previous` has the camera's size, `excluded` the same or none.
+  /// The depth of the nearest measured point of `previous` in each cell, without the pixels of
+  /// `excluded`. `previous` has the camera's size; `excluded` has the same size or is empty.
   [[nodiscard]] HalfDepth warp(const DepthImage& previous,
                                const Eigen::Isometry3d& T_current_previous,
                                const Mask& excluded = {}) const;
 
  private:
   struct Row {
-    std::int32_t* cell;  // out: its number, row by row; that after the last for none
+    std::int32_t* cell;  // out: cell number, row by row; one past the last for none
     float* z;            // metres; in and out
     std::size_t size;
   };
@@ -89,9 +98,10 @@ class DepthWarper {
   cv::Mat1f ray_x_, ray_y_;  // of the cells, x / z and y / z
 };
 
-/// Where the current depth is nearer, or farther, than all of the warped depth within two pixels,
-/// by more than jump_m + jump_per_m z^2. So a depth edge that stands still is no jump, although it
-/// never falls on the same pixels twice. Missing depth is no jump. kWentFarther only if `revealed`.
+/// The pixels at which the current depth is nearer, or farther, than all warped depth within two
+/// pixels by more than jump_m + jump_per_m z^2. A static depth edge is thus no jump, although it
+/// never falls on the same pixels twice. Missing depth is no jump. kWentFarther occurs only if
+/// `revealed` is set.
 [[nodiscard]] JumpImage depth_jumps(const DepthImage& current,
                                     const HalfDepth& expected,
                                     const DepthJumpConfig& config);

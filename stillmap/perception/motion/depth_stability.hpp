@@ -27,17 +27,23 @@ struct DepthStabilityConfig {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("enabled", self.enabled, FieldInfo{"judge how steady the depth round a feature is"});
+    visit("enabled",
+          self.enabled,
+          FieldInfo{"whether features are judged by the stability of the depth around them"});
     visit("mad_factor",
           self.mad_factor,
-          FieldInfo{"a spread farther from the median, in scaled MADs, is unstable", "", 0.1, 100});
+          FieldInfo{
+              "distance from the median spread, in scaled MADs, beyond which a feature is unstable",
+              "",
+              0.1,
+              100});
     visit("relative",
           self.relative,
-          FieldInfo{"full: compare spreads in terms of noise, which grows with depth squared"});
+          FieldInfo{"full: whether spreads are divided by the noise of their depth"});
     visit("rejected",
           self.rejected,
-          FieldInfo{"full: what becomes of features of unstable depth; paper drops them, and those "
-                    "of missing depth",
+          FieldInfo{"full: treatment of a feature of unstable depth; paper drops it, and one of "
+                    "missing depth",
                     "",
                     0,
                     0,
@@ -45,10 +51,11 @@ struct DepthStabilityConfig {
   }
 };
 
-/// Fan 2020, section III-E: how steady the depth round each feature is. Of the 3x3 pixels round it
-/// the standard deviation is taken; a feature is unstable whose deviation is more than `mad_factor`
-/// scaled MADs from the median of all features with depth. With `relative`, deviations are divided
-/// by depth squared before. `raw_px` are where the image has the features; a result for each.
+/// The stability of the depth around each feature (Fan 2020, section III-E, Eq. (14)). A feature is
+/// unstable if the standard deviation of the depths of its 3x3 block is more than `mad_factor`
+/// scaled MADs from the median of all features with depth. With `relative`, deviations are first
+/// divided by depth squared. `raw_px` are the raw pixels of the features; there is one result for
+/// each.
 [[nodiscard]] std::vector<DepthStability> judge_depth_stability(
     const DepthImage& depth,
     std::span<const Eigen::Vector2f> raw_px,

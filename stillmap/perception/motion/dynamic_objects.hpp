@@ -26,7 +26,9 @@ struct InteractionConfig {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("enabled", self.enabled, FieldInfo{"what a person is at is taken as dynamic"});
+    visit("enabled",
+          self.enabled,
+          FieldInfo{"whether an object that a person interacts with is dynamic"});
   }
 };
 
@@ -45,16 +47,16 @@ struct DynamicObjectsConfig {
   }
 };
 
-/// The pixels of a frame that must not be taken as static. All of the image's size.
+/// The dynamic pixels of a frame. All images have the frame's size.
 struct DynamicMask {
-  ObjectMask raw;       ///< the network's pixels of dynamic objects
-  ObjectMask extended;  ///< the same after the extension
-  JumpImage jumps;      ///< pixels that suddenly have another depth
+  ObjectMask raw;       ///< masks of dynamic objects from the network
+  ObjectMask extended;  ///< the same masks after extension
+  JumpImage jumps;      ///< pixels with a depth jump
 
   [[nodiscard]] bool covers(int row, int column) const {
     return extended.mat(row, column) != 0 || jumps.mat(row, column) != 0;
   }
-  /// Both in one.
+  /// The union of extended masks and depth jumps.
   [[nodiscard]] Mask all() const;
 };
 
@@ -63,45 +65,46 @@ struct DynamicsResult {
   std::vector<ObjectState> states;  ///< in the order of the frame's objects
 };
 
-/// The depth of an earlier frame, which shows what has changed since. JumpRule::kPreviousFrame
-/// compares with the frame right before, pixel by pixel. For kWarpedFrames a frame from 10 to 20
-/// frames before, with its dynamic pixels, is best: a moving object has left its place by then, and
-/// what has not changed is known to stand still. Still earlier frames show the surface behind those
-/// who were in the way then.
+/// The depth of an earlier frame, for comparison. JumpRule::kPreviousFrame compares with the
+/// previous frame, pixel by pixel. For kWarpedFrames a frame 10 to 20 frames earlier, with its
+/// dynamic pixels, is best: a moving object has left its place by then, and unchanged surface is
+/// known to be static. Still earlier frames show the surface behind people who hid it in the later
+/// one.
 struct PreviousDepth {
   DepthImage depth;
   Eigen::Isometry3d T_current_previous = Eigen::Isometry3d::Identity();
   Mask dynamic = {};  ///< pixels of that frame that were not static
 };
 
-/// What a frame alone says of its objects.
+/// The measurements of a frame's objects that need no other frame.
 struct MeasuredObjects {
   MaskAreas areas;
   std::vector<ObjectDepths> depths;  ///< in the order of the frame's objects
 };
 
-/// Judges the objects of a frame and finds the pixels of those that move: Fan 2020, sections III-B
-/// and III-C. Keeps nothing between frames; the same input gives the same bits.
+/// Judges the objects of a frame and finds its dynamic pixels (Fan 2020, sections III-A and III-B).
+/// Keeps no state between frames; the same input gives the same bits.
 class DynamicObjects {
  public:
-  /// Throws Error for categories that make no sense.
+  /// Throws Error for invalid categories.
   DynamicObjects(const DynamicObjectsConfig& config,
                  const CameraModel& camera,
                  const DynamicsMode& mode);
 
-  /// The part of the work that needs nothing of earlier frames.
+  /// The part of the work that needs no earlier frame.
   [[nodiscard]] MeasuredObjects measure(const DepthImage& depth, const FrameObjects& objects) const;
 
   /// `measured` is the result of measure() for the same frame. `previous` are earlier frames, the
-  /// best first; without any, no pixel has jumped. JumpRule::kPreviousFrame needs one, and no motion
-  /// of it. `moving` are the tracks known to move: dynamic where the mode judges by motion.
+  /// best first; without any there are no depth jumps. JumpRule::kPreviousFrame needs one, without
+  /// its pose. `moving` are the tracks known to move; they are dynamic if the mode judges by
+  /// motion.
   [[nodiscard]] DynamicsResult judge(const DepthImage& depth,
                                      const FrameObjects& objects,
                                      const MeasuredObjects& measured,
                                      std::span<const PreviousDepth> previous,
                                      std::span<const TrackId> moving = {}) const;
 
-  /// Both at once.
+  /// measure() and judge() in one call.
   [[nodiscard]] DynamicsResult judge(const DepthImage& depth,
                                      const FrameObjects& objects,
                                      std::span<const PreviousDepth> previous,
@@ -118,10 +121,10 @@ class DynamicObjects {
   [[nodiscard]] ObjectState state_by_class(const TrackedObject& object,
                                            const ObjectDepths& depths) const;
   [[nodiscard]] ObjectMask extended_mask(const DepthImage& depth,
-                                        const FrameObjects& objects,
-                                        const MeasuredObjects& measured,
-                                        const std::vector<ObjectState>& states,
-                                        const HalfDepth& known_static) const;
+                                         const FrameObjects& objects,
+                                         const MeasuredObjects& measured,
+                                         const std::vector<ObjectState>& states,
+                                         const HalfDepth& known_static) const;
   [[nodiscard]] JumpImage jumps(const DepthImage& depth,
                                 std::span<const PreviousDepth> previous,
                                 const HalfDepth& expected) const;

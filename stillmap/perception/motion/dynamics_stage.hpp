@@ -26,26 +26,34 @@ struct DynamicsConfig {
   MotionStateConfig motion;
   FeatureFilterConfig features;
 
-  /// How objects are followed in this mode.
+  /// The settings of object tracking in this mode.
   [[nodiscard]] ObjectTrackerConfig object_tracking() const;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("mode",
           self.mode,
-          FieldInfo{"treatment of what moves", "", 0, 0, dynamics_mode_names()});
+          common_setting(
+              FieldInfo{"treatment of motion; docs/algorithm.md has the stages of each mode",
+                        "",
+                        0,
+                        0,
+                        dynamics_mode_names()}));
     visit("feature_margin_px",
           self.feature_margin_px,
-          FieldInfo{"features this near to what moves are not used", "px", 0, 50});
+          common_setting(
+              FieldInfo{"distance that features keep from the pixels that move", "px", 0, 50}));
     visit("compare_frames",
           self.compare_frames,
-          FieldInfo{"full: age of the depth that a frame is compared with; also twice and 4 times",
-                    "frames",
-                    1,
-                    60});
+          common_setting(FieldInfo{"full: age of the depth that a frame is compared with; twice "
+                                   "and four times that age, too",
+                                   "frames",
+                                   1,
+                                   60}));
     visit("fill_boxes",
           self.fill_boxes,
-          FieldInfo{"take over what a network has missed from the frames before and after"});
+          FieldInfo{"whether an object that the network misses is filled in from the frames before "
+                    "and after"});
     DynamicObjectsConfig::fields(self.objects, visit);
     visit.group("tracker", self.tracker);
     visit.group("motion", self.motion);
@@ -53,19 +61,18 @@ struct DynamicsConfig {
   }
 };
 
-/// The dynamics of one frame: its objects, judged, and the pixels of those that move.
+/// The dynamics of one frame: its judged objects and its dynamic pixels.
 struct FrameDynamics {
   FrameObjects objects;
   DynamicsResult judged;  ///< `judged.states` in the order of the objects
   Mask excluded;          ///< pixels that no feature may have: `judged.mask` and a margin
 };
 
-/// Says which pixels and features of each frame must not be taken for the static world, and
-/// remembers the past frames that this takes. Poses are in the odometry frame, which loop
-/// corrections do not change.
+/// Finds the pixels and features of each frame that are not static, and remembers the past frames
+/// needed for that. Poses are in the odometry frame, which loop corrections do not change.
 ///
-/// This base class is the null stage of a mode that judges nothing: no pixel is excluded, every
-/// feature stays.
+/// This base class is the null stage of a mode that judges nothing: it excludes no pixel and keeps
+/// every feature.
 class DynamicsStage {
  public:
   DynamicsStage() = default;
@@ -73,46 +80,46 @@ class DynamicsStage {
   DynamicsStage& operator=(const DynamicsStage&) = delete;
   virtual ~DynamicsStage() = default;
 
-  /// Depths of the objects: all that a frame alone says of them. May be called on any thread at any
+  /// The measurements of the objects that need no other frame. May be called on any thread at any
   /// time.
   [[nodiscard]] virtual MeasuredObjects measure(const RgbdFrame& frame,
                                                 const FrameObjects& objects) const;
 
-  /// Judges a frame whose pose is only expected, or not even that. `measured` is the result of
-  /// measure() for the same frame.
+  /// Judges a frame by its predicted pose; nothing if there is no prediction. `measured` is the
+  /// result of measure() for the same frame.
   [[nodiscard]] virtual FrameDynamics judge(
       const RgbdFrame& frame,
       FrameObjects objects,
       const MeasuredObjects& measured,
       const std::optional<Eigen::Isometry3d>& T_odometry_camera_expected) const;
 
-  /// The features off `dynamics.excluded` that may be used. The next frame's are compared with all
-  /// of them.
+  /// The features, which are all off `dynamics.excluded`, that may be used for the pose. The next
+  /// frame is compared with all of them.
   [[nodiscard]] virtual FilteredFeatures filter(
       const RgbdFrame& frame,
       Features features,
       const FrameDynamics& dynamics,
       const std::optional<Eigen::Isometry3d>& T_odometry_camera_expected);
 
-  /// The states of the frame's objects with their motion, now that the frame has a pose. To be
-  /// called with the own objects of each frame that has any, in the order of the frames.
+  /// The states of the objects with their motion, for a frame with a pose. To be called with the
+  /// own objects of each frame that has any, in the order of the frames.
   [[nodiscard]] virtual std::vector<ObjectState> with_motion(
       const RgbdFrame& frame,
       const Eigen::Isometry3d& T_odometry_camera,
       const FrameDynamics& dynamics);
 
-  /// Later frames are compared with this frame.
+  /// Remembers the frame for comparison with later frames.
   virtual void remember(const RgbdFrame& frame,
                         const Eigen::Isometry3d& T_odometry_camera,
                         const FrameDynamics& dynamics);
 
-  /// Tracking was lost: the next frame with a pose does not follow on the last. Older frames stay
-  /// known, for they are in the same odometry frame: people stand out at once when the camera is
-  /// found again near there.
+  /// Tells the stage that tracking was lost: the next frame with a pose does not continue the last.
+  /// Older frames are kept, because they are in the same odometry frame. They show moving people as
+  /// soon as the camera is relocalised nearby.
   virtual void forget();
 };
 
-/// The stage of `config.mode`. Throws Error for a mode or categories that do not exist.
+/// The stage of `config.mode`. Throws Error for an unknown mode or category.
 [[nodiscard]] std::unique_ptr<DynamicsStage> make_dynamics_stage(const DynamicsConfig& config,
                                                                  const CameraModel& camera,
                                                                  std::uint32_t seed);

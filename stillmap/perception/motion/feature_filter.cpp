@@ -36,9 +36,9 @@ PointMatch point_match(const Features& previous, const Features& current, const 
 
 using MatchVerdicts = std::vector<std::optional<MatchVerdict>>;
 
-/// What is seen in a box of something dynamic. Without a match_verdict, as every new feature is, it
-/// stays: where people fill the image nearly all features are in boxes, and to drop those would
-/// lose the camera.
+/// The verdict on a feature in the box of a dynamic object. A feature without a match verdict, as
+/// every new feature, is kept: when people fill the image nearly all features are in boxes, and
+/// dropping them would lose tracking.
 FeatureVerdict verdict_in_box(const std::optional<MatchVerdict>& match_verdict) {
   switch (match_verdict.value_or(MatchVerdict::kUnknown)) {
     case MatchVerdict::kStatic:
@@ -66,9 +66,9 @@ FeatureFilter::FeatureFilter(const FeatureFilterConfig& config,
     config_.depth_stability.relative = false;
     config_.depth_stability.rejected = "drop";
   }
-  const bool asked = mode.static_matches == StaticMatchRule::kJudge ||
-                     (mode.static_matches == StaticMatchRule::kConfigured &&
-                      config_.static_matches.in_full);
+  const bool asked =
+      mode.static_matches == StaticMatchRule::kJudge ||
+      (mode.static_matches == StaticMatchRule::kConfigured && config_.static_matches.in_full);
   if (!asked) config_.static_matches.enabled = false;
 }
 
@@ -122,7 +122,8 @@ std::vector<std::optional<MatchVerdict>> FeatureFilter::judge_boxes(
                                                               scene.features,
                                                               camera_,
                                                               scene.T_current_previous,
-                                                              config_.static_matches.search_px);
+                                                              config_.static_matches.search_px,
+                                                              config_.static_matches.match);
   std::vector<PointMatch> environment;
   for (const FeatureMatch& match : matches) {
     if (boxed[match.feature] != 0) continue;

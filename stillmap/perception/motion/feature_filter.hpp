@@ -25,20 +25,20 @@ struct RejectedFeature {
   FeatureVerdict verdict = FeatureVerdict::kStable;
 };
 
-/// The features that may tell the pose, and the verdicts on all.
+/// The features that may be used for the pose, and the verdicts on all features.
 struct FilteredFeatures {
   Features features;
-  std::vector<FeatureVerdict> verdicts;  ///< of `features`; empty where nothing is judged
-  std::vector<RejectedFeature> dropped;  ///< the others
+  std::vector<FeatureVerdict> verdicts;  ///< of `features`; empty if the mode judges none
+  std::vector<RejectedFeature> dropped;  ///< the features that were dropped
 };
 
-/// The features of a frame, with what it takes to judge them.
+/// The features of a frame, with the input for judging them.
 struct FeatureScene {
   const Features& features;
   const DepthImage& depth;
   std::vector<PixelBox> dynamic_boxes;
-  FeaturesPtr previous;  ///< of the frame before, as they were extracted; may be null
-  std::optional<Eigen::Isometry3d> T_current_previous;  ///< as expected
+  FeaturesPtr previous;  ///< extracted features of the previous frame; may be null
+  std::optional<Eigen::Isometry3d> T_current_previous;  ///< predicted
   FrameId frame;
 };
 
@@ -53,10 +53,10 @@ struct FeatureFilterConfig {
   }
 };
 
-/// Judges features by their depth and, in the boxes of dynamic objects, by their motion: Fan 2020,
-/// sections III-E and III-F, as far as the mode asks for it. A feature in a box that has no match
-/// in the frame before stays. Keeps nothing between frames; the same input and seed give the same
-/// bits.
+/// Judges features by their depth (Fan 2020, section III-E) and, in the boxes of dynamic objects,
+/// by their motion (section III-F), according to the rules of the mode. A feature in a box without
+/// a match in the previous frame is kept. Keeps no state between frames; the same input and seed
+/// give the same bits.
 class FeatureFilter {
  public:
   FeatureFilter(const FeatureFilterConfig& config,

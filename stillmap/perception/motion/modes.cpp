@@ -10,20 +10,20 @@
 namespace stillmap {
 namespace {
 
-// A mode is a row here and nothing else. One that needs a new rule adds an enumerator to that rule
-// and its branch in the stage that reads it.
+// A mode is a row of this table and nothing else. A mode that needs a new rule adds an enumerator
+// to the rule's type and a branch to the stage that reads it.
 //
-// `off` and `mask` remove nothing from the map: they are there to be compared with. `paper` has the
-// thresholds of Fan 2020. `full` has depth edges by a threshold that grows with depth as the
-// sensor's noise does, since a fixed one costs the farther walls; instead of islands, which are
-// mostly legs of chairs or what is seen between people, it removes what later views see through.
+// `off` and `mask` remove nothing from the map: they serve comparison. `paper` has the thresholds
+// of Fan 2020. In `full` the threshold of depth edges grows with depth, as the sensor's noise does,
+// because a fixed threshold removes far walls. Instead of islands, which are mostly legs of chairs
+// or surface seen between people, `full` removes points that later views see through.
 constexpr std::array kModes = {
     DynamicsMode{.name = "off",
-                 .meaning = "nothing is done: SLAM for a static world",
+                 .meaning = "motion is ignored: SLAM for a static world",
                  .judges = false,
                  .cloud = {.edges = "off", .islands = "off", .free_space = "off"}},
     DynamicsMode{.name = "mask",
-                 .meaning = "what the network's masks of dynamic classes cover is left out",
+                 .meaning = "the network's masks of dynamic classes are left out",
                  .cloud = {.edges = "off", .islands = "off", .free_space = "off"}},
     DynamicsMode{.name = "paper",
                  .meaning = "the method of Fan et al. 2020",
@@ -34,15 +34,17 @@ constexpr std::array kModes = {
                  .depth_stability = DepthStabilityRule::kDrop,
                  .static_matches = StaticMatchRule::kJudge,
                  .cloud = {.edges = "fixed", .islands = "on", .free_space = "off"}},
-    DynamicsMode{.name = "full",
-                 .meaning = "masks extended by depth, motion of all objects, free space; the best",
-                 .extension = ExtensionRule::kConfigured,
-                 .interaction = true,
-                 .jumps = JumpRule::kWarpedFrames,
-                 .motion = true,
-                 .depth_stability = DepthStabilityRule::kConfigured,
-                 .static_matches = StaticMatchRule::kConfigured,
-                 .cloud = {.edges = "growing", .islands = "off", .free_space = "on"}},
+    DynamicsMode{
+        .name = "full",
+        .meaning =
+            "masks extended by depth, depth jumps over seconds, motion of objects, free space",
+        .extension = ExtensionRule::kConfigured,
+        .interaction = true,
+        .jumps = JumpRule::kWarpedFrames,
+        .motion = true,
+        .depth_stability = DepthStabilityRule::kConfigured,
+        .static_matches = StaticMatchRule::kConfigured,
+        .cloud = {.edges = "growing", .islands = "off", .free_space = "on"}},
 };
 
 }  // namespace

@@ -104,9 +104,8 @@ MotionEstimator::Track& MotionEstimator::track_of(TrackId id) {
   return *tracks_.insert(place, std::move(fresh));
 }
 
-std::optional<MotionEstimator::Position> MotionEstimator::position_of(const View& view,
-                                                                const TrackedObject& object,
-                                                                const ObjectState& state) const {
+std::optional<MotionEstimator::Position> MotionEstimator::position_of(
+    const View& view, const TrackedObject& object, const ObjectState& state) const {
   if (!state.depths || view.objects.mask.mat.empty()) return std::nullopt;
   const cv::Rect area = pixels_of(object.detection.box, view.depth.mat.size());
   const std::optional<Eigen::Vector2d> pixel =
@@ -121,8 +120,8 @@ std::optional<MotionEstimator::Position> MotionEstimator::position_of(const View
 }
 
 std::vector<Eigen::Vector3d> MotionEstimator::surface_of(const View& view,
-                                                      const TrackedObject& object,
-                                                      const ObjectState& state) const {
+                                                         const TrackedObject& object,
+                                                         const ObjectState& state) const {
   const cv::Rect area = pixels_of(object.detection.box, view.depth.mat.size());
   const int step = std::max(1, static_cast<int>(std::sqrt(area.area() / kSurfacePoints)));
   std::vector<Eigen::Vector3d> points;
@@ -155,7 +154,7 @@ double MotionEstimator::vacated(const Position& old, const View& view, int id) c
     const double noise = 3 * config_.depth_noise_per_m * p.z() * p.z();
     const bool same = std::abs(change) <= config_.vacated_m + noise;
     there += same ? 1 : 0;
-    // What is nearer hides it, unless it is the object itself that has come.
+    // Nearer depth hides the surface, unless it is the object itself that came nearer.
     if (!same && (change > 0 || view.objects.mask.mat(row, x) == id)) ++gone;
   }
   return gone == 0 ? 0.0 : static_cast<double>(gone) / (gone + there);
@@ -213,9 +212,9 @@ Motion MotionEstimator::motion_of(const Track& track, const ObjectState& state) 
 }
 
 std::vector<Motion> MotionEstimator::update(const FrameObjects& objects,
-                                               const DepthImage& depth,
-                                               std::span<const ObjectState> states,
-                                               const Eigen::Isometry3d& T_world_camera) {
+                                            const DepthImage& depth,
+                                            std::span<const ObjectState> states,
+                                            const Eigen::Isometry3d& T_world_camera) {
   STILLMAP_CHECK(states.size() == objects.objects.size());
   const double now = objects.stamp.seconds;
   std::erase_if(tracks_, [now](const Track& t) { return now - t.last_seen_s > kForgetAfter_s; });

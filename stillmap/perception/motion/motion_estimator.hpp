@@ -12,8 +12,8 @@
 
 #include "stillmap/core/fields.hpp"
 #include "stillmap/geometry/camera.hpp"
-#include "stillmap/perception/objects/object_state.hpp"
 #include "stillmap/perception/objects/frame_objects.hpp"
+#include "stillmap/perception/objects/object_state.hpp"
 
 namespace stillmap {
 
@@ -33,39 +33,45 @@ struct MotionStateConfig {
   static void fields(Self& self, Visitor& visit) {
     visit("window_frames",
           self.window_frames,
-          FieldInfo{"positions of an object that its velocity comes from", "frames", 3, 100});
+          FieldInfo{"greatest number of positions for an object's velocity", "frames", 3, 100});
     visit("min_frames",
           self.min_frames,
-          FieldInfo{"positions that it takes at least", "frames", 3, 100});
-    visit("moving_m_s",
-          self.moving_m_s,
-          FieldInfo{"a still object that is faster, beyond the error, moves", "m/s", 0, 10});
+          FieldInfo{"least number of positions for an object's velocity", "frames", 3, 100});
+    visit(
+        "moving_m_s",
+        self.moving_m_s,
+        FieldInfo{"speed, beyond its error, at which a still object becomes moving", "m/s", 0, 10});
     visit("still_m_s",
           self.still_m_s,
-          FieldInfo{"a moving object that is slower for some frames is still", "m/s", 0, 10});
+          FieldInfo{
+              "speed below which a moving object becomes still after calm_frames", "m/s", 0, 10});
     visit("certainty",
           self.certainty,
-          FieldInfo{"standard errors of the velocity that count as its error", "", 0, 100});
+          FieldInfo{"error of a velocity, in standard errors", "", 0, 100});
     visit("depth_noise_per_m",
           self.depth_noise_per_m,
-          FieldInfo{"least error of a position, growing with depth squared", "1/m", 0, 1});
-    visit("border_factor",
-          self.border_factor,
-          FieldInfo{"how much faster it must be where the image cuts it off", "", 1, 100});
-    visit("calm_frames",
-          self.calm_frames,
-          FieldInfo{"frames that it takes to be still again", "frames", 1, 1000});
-    visit("vacated_share",
-          self.vacated_share,
-          FieldInfo{"what moves must have left this much of where it was", "", 0, 1});
-    visit("vacated_m",
-          self.vacated_m,
-          FieldInfo{"change of depth that shows it left, besides noise", "m", 0, 10});
+          FieldInfo{"least standard deviation of a position, per depth squared", "1/m", 0, 1});
+    visit(
+        "border_factor",
+        self.border_factor,
+        FieldInfo{"factor on moving_m_s for an object cut off by the image's border", "", 1, 100});
+    visit(
+        "calm_frames",
+        self.calm_frames,
+        FieldInfo{"number of slow frames after which a moving object is still", "frames", 1, 1000});
+    visit(
+        "vacated_share",
+        self.vacated_share,
+        FieldInfo{"share of its earlier pixels that a moving object must have vacated", "", 0, 1});
+    visit(
+        "vacated_m",
+        self.vacated_m,
+        FieldInfo{"change of depth that shows a pixel vacated, in addition to noise", "m", 0, 10});
   }
 };
 
-/// The slope of positions over time that is the median of those between two of them, for each axis,
-/// and its standard error.
+/// The median of the slopes between all pairs of positions over time (Theil-Sen), for each axis,
+/// with its standard error.
 struct RobustVelocity {
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
   double error = 0;
@@ -74,28 +80,28 @@ struct RobustVelocity {
                                              std::span<const Eigen::Vector3d> positions,
                                              double least_noise_m);
 
-/// Follows the middle of each tracked object in the world, and says which of them move.
+/// Estimates the motion of each tracked object from the positions of its middle.
 ///
-/// An object's middle is the median column and row of its pixels at the median of their depths. Its
-/// velocity is the median slope over the last frames (Theil-Sen), with an error from the scatter
-/// about it, but no less than depth noise makes; so the farther an object, or the more its mask
-/// flickers, the faster it must be to count as moving. And it must have left some of where it was:
-/// a part of its surface of some frames ago, where one now sees farther or an other part of it. So
-/// what is covered up, or cut off by the image, bit by bit does not seem to move. Boxes that were
-/// filled in are no evidence.
+/// The middle of an object is the median column and row of its pixels at the median of their
+/// depths. Its velocity is the median slope over the last frames (Theil-Sen), with an error from
+/// the scatter around it, at least that of depth noise. A far object, or one with a flickering
+/// mask, must therefore be faster to count as moving. It must also have vacated a part of its
+/// surface of some frames ago: the camera now sees farther there, or another part of the object. An
+/// object that is gradually covered, or cut off by the border of the image, does not count as
+/// moving. Filled boxes are no evidence.
 class MotionEstimator {
  public:
   MotionEstimator(const MotionStateConfig& config, const CameraModel& camera);
 
-  /// Takes a frame with the states of its objects; gives the motion of each in their order. Frames
-  /// in which an object was detected itself come in the order of their stamps. `T_world_camera` is
-  /// in a frame that never jumps: the odometry frame.
+  /// Adds a frame with the states of its objects and returns the motion of each, in their order.
+  /// Frames with detected (not only filled) objects must be in the order of their stamps.
+  /// `T_world_camera` is in a coordinate frame that never jumps: the odometry frame.
   [[nodiscard]] std::vector<Motion> update(const FrameObjects& objects,
-                                                 const DepthImage& depth,
-                                                 std::span<const ObjectState> states,
-                                                 const Eigen::Isometry3d& T_world_camera);
+                                           const DepthImage& depth,
+                                           std::span<const ObjectState> states,
+                                           const Eigen::Isometry3d& T_world_camera);
 
-  /// The tracks that move as of the last frame, in the order of their numbers.
+  /// The tracks that move in the last frame, by number.
   [[nodiscard]] std::vector<TrackId> moving() const;
 
  private:
@@ -103,7 +109,7 @@ class MotionEstimator {
     double stamp_s = 0;
     Eigen::Vector3d p_world;
     double noise_m = 0;
-    std::vector<Eigen::Vector3d> surface;  // some of what was seen of it, in the world
+    std::vector<Eigen::Vector3d> surface;  // a sample of its visible surface, in the world frame
   };
   struct View {
     const FrameObjects& objects;
@@ -115,7 +121,7 @@ class MotionEstimator {
     std::deque<Position> positions;
     RobustVelocity velocity;
     bool moving = false, known = false;
-    int calm = 0;  // frames in a row in which it was slow
+    int calm = 0;  // number of consecutive slow frames
     double last_seen_s = 0;
   };
 

@@ -11,6 +11,7 @@
 #include "stillmap/core/fields.hpp"
 #include "stillmap/geometry/camera.hpp"
 #include "stillmap/geometry/point_match.hpp"
+#include "stillmap/slam/features/matcher.hpp"
 
 namespace stillmap {
 
@@ -25,54 +26,78 @@ struct StaticMatchesConfig {
   int iterations = 200;
   double search_px = 20;
   bool in_full = false;
+  double inlier_px = 1.0;
+  MatchRules match{.max_distance = 60, .max_ratio = 0.9};
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("enabled", self.enabled, FieldInfo{"judge matches in the boxes of what moves"});
-    visit("in_full", self.in_full, FieldInfo{"full: judge them as well"});
+    visit("enabled",
+          self.enabled,
+          FieldInfo{
+              "whether features in the boxes of dynamic objects are judged by epipolar geometry"});
+    visit("in_full", self.in_full, FieldInfo{"whether mode full judges them, too"});
+    visit("epipolar_px",
+          self.epipolar_px,
+          FieldInfo{"distance from the epipolar line above which a match moves (tau5 of Fan 2020)",
+                    "px",
+                    0,
+                    50});
     visit(
-        "epipolar_px",
-        self.epipolar_px,
-        FieldInfo{"a match farther from its epipolar line moves (tau5 of Fan 2020)", "px", 0, 50});
-    visit("reprojection_px",
-          self.reprojection_px,
-          FieldInfo{"a match farther from where it would stand still moves", "px", 0, 50});
+        "reprojection_px",
+        self.reprojection_px,
+        FieldInfo{"distance from its static reprojection above which a match moves", "px", 0, 50});
     visit("depth_m",
           self.depth_m,
-          FieldInfo{"a match nearer or farther by more than that moves", "m", 0, 10});
+          FieldInfo{"difference from its static depth above which a match moves", "m", 0, 10});
     visit("depth_per_m",
           self.depth_per_m,
-          FieldInfo{"growth of that distance with depth squared", "1/m", 0, 10});
+          FieldInfo{"growth of depth_m with depth squared", "1/m", 0, 10});
     visit("min_environment",
           self.min_environment,
-          FieldInfo{"matches outside of boxes that tell the camera's motion", "", 8, 10000});
+          FieldInfo{"number of matches in the environment region needed for the camera's motion",
+                    "",
+                    8,
+                    10000});
     visit("min_parallax_px",
           self.min_parallax_px,
-          FieldInfo{"less of it than that is a camera that only turns", "px", 0, 50});
-    visit("iterations", self.iterations, FieldInfo{"of RANSAC, at most", "", 1, 100000});
+          FieldInfo{"parallax below which the camera only rotates and has no fundamental matrix",
+                    "px",
+                    0,
+                    50});
+    visit("iterations",
+          self.iterations,
+          FieldInfo{"greatest number of RANSAC iterations", "", 1, 100000});
     visit("search_px",
           self.search_px,
-          FieldInfo{"how far a feature may be from where it would stand still", "px", 1, 200});
+          FieldInfo{"search radius for a match around its static reprojection", "px", 1, 200});
+    visit("inlier_px",
+          self.inlier_px,
+          FieldInfo{"distance from the epipolar line within which a match of the environment "
+                    "region is an inlier",
+                    "px",
+                    0.01,
+                    50});
+    visit.group("match", self.match);
   }
 };
 
-/// What two frames say of the camera between them. Empty when they say nothing.
+/// The motion of the camera between two frames. Empty if the matches do not determine it.
 struct TwoViewGeometry {
-  std::optional<Eigen::Matrix3d> F;    ///< none where the camera only turns
-  std::optional<Eigen::Isometry3d> T;  ///< T_current_previous, when depth or a guess gives it
-  std::optional<Eigen::Matrix3d> R;    ///< where there is no F: how the camera turns
-  bool estimated = false;              ///< from the matches, not guessed
+  std::optional<Eigen::Matrix3d> F;    ///< none if the camera only rotates
+  std::optional<Eigen::Isometry3d> T;  ///< T_current_previous, if depth or the prediction gives it
+  std::optional<Eigen::Matrix3d> R;    ///< the rotation, if there is no F
+  bool estimated = false;              ///< from matches, not from the prediction
 };
 
 enum class MatchVerdict : std::uint8_t {
   kStatic,
   kDynamic,
-  kUnknown,  ///< nothing is known that could tell
+  kUnknown,  ///< not enough is known
 };
 
-/// Fan 2020, section III-E: the geometry of two frames from matches in the environment region. F by
-/// RANSAC, the motion from the depth of its inliers. A camera that only turns has no F. Where too
-/// few match, the `expected_T_current_previous`, if there is one, stands in.
+/// The geometry of two frames from matches in the environment region (Fan 2020, section III-F): F
+/// by RANSAC, the motion from the depth of the inliers. A camera that only rotates has no F. With
+/// too few matches `expected_T_current_previous`, if given, is used instead.
 [[nodiscard]] TwoViewGeometry estimate_two_view(
     const CameraModel& camera,
     std::span<const PointMatch> environment,
@@ -80,9 +105,9 @@ enum class MatchVerdict : std::uint8_t {
     const StaticMatchesConfig& config,
     std::mt19937& rng);
 
-/// Fan 2020, Eqs. (15)-(17), for a match in the dynamic region: it moves when it is off its
-/// epipolar line. What is on it may move along it, so the point's reprojection under the motion,
-/// and its depth, must agree as well where they are known.
+/// The verdict on a match in the dynamic region (Fan 2020, section III-F, Eqs. (15)-(17)): it moves
+/// if it is off its epipolar line. A point may also move along the line, so the reprojection under
+/// the motion, and the depth, must agree, too, if they are known.
 [[nodiscard]] MatchVerdict judge_match(const CameraModel& camera,
                                        const TwoViewGeometry& geometry,
                                        const PointMatch& match,

@@ -9,8 +9,8 @@ namespace stillmap {
 
 struct PropagationRule {
   double depth_margin_m = 0.15;  ///< change of depth that the object may have made since
-  double min_kept_share =
-      0.25;  ///< share of the propagated pixels that must remain; else the whole box is used
+  /// share of the propagated pixels that must remain; else the whole box is used
+  double min_kept_share = 0.25;
   OutlierRule outliers;
 };
 

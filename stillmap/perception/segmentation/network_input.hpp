@@ -36,8 +36,8 @@ struct InputPlacement {
 /// The input format of a network: (value / 255 - mean) / deviation for each channel.
 struct InputFormat {
   bool channels_last = false;
-  bool blue_first =
-      false;  ///< channels in the order blue, green, red, also in the next two members
+  /// channels in the order blue, green, red, also in the next two members
+  bool blue_first = false;
   std::array<float, 3> mean{0, 0, 0};
   std::array<float, 3> deviation{1, 1, 1};
   float padding = 0;  ///< value around the image, from 0 to 255

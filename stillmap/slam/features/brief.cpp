@@ -12,7 +12,7 @@
 namespace stillmap {
 namespace {
 
-// Half width of each row of the round patch.
+// The half width of each row of the round patch.
 constexpr std::array<int, kPatchRadiusPx + 1> kHalfWidths = [] {
   std::array<int, kPatchRadiusPx + 1> widths{};
   for (int v = 0; v <= kPatchRadiusPx; ++v) {
@@ -23,11 +23,11 @@ constexpr std::array<int, kPatchRadiusPx + 1> kHalfWidths = [] {
   return widths;
 }();
 
-// The square round the patch, row by row, with one more in each row: whole vectors.
+// The square around the patch, row by row, padded by one column to whole vectors.
 constexpr std::size_t kPatchSide = 2 * kPatchRadiusPx + 1, kPatchStride = kPatchSide + 1;
 constexpr std::size_t kPatchCells = kPatchSide * kPatchStride;
 
-// Distances from the centre, 0 out of the round patch.
+// Distances from the centre, 0 outside the round patch.
 struct Moments {
   std::array<std::int16_t, kPatchCells> x{}, y{};
 };
@@ -46,7 +46,7 @@ constexpr Moments kMoments = [] {
   return moments;
 }();
 
-// The pattern's points one after the other, in an order that the compiler can work on in parallel.
+// The points of the pattern, in an order that the compiler can vectorise.
 struct PatternPoints {
   std::array<float, 2 * kBriefPattern.size()> x{}, y{};
 };
@@ -62,8 +62,8 @@ constexpr PatternPoints kPatternPoints = [] {
   return points;
 }();
 
-// To the nearest whole number, halves to the even one, for |value| < 2^22: the sum has no bits left
-// for fractions. Unlike a call to round, it is done for several values at once.
+// Rounds to the nearest whole number, halves to even, for |value| < 2^22: the sum has no bits for
+// fractions. Unlike a call of std::round, this vectorises.
 float rounded(float value) {
   constexpr float kShift = 12582912.0F;  // 1.5 * 2^23
   return (value + kShift) - kShift;

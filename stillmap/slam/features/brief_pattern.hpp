@@ -6,7 +6,8 @@
 
 namespace stillmap {
 
-/// Is the blurred patch darker at (x0, y0) than at (x1, y1)? Offsets from the centre, in pixels.
+/// A test: whether the blurred patch is darker at (x0, y0) than at (x1, y1), offsets from the
+/// centre in pixels.
 struct BriefTest {
   std::int8_t x0, y0, x1, y1;
 };

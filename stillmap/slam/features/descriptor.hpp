@@ -12,7 +12,7 @@ using Descriptor = std::array<std::uint64_t, 4>;
 
 inline constexpr int kDescriptorBits = 256;
 
-/// Number of differing bits, 0 to 256.
+/// The Hamming distance, 0 to 256.
 [[nodiscard]] inline int hamming_distance(const Descriptor& a, const Descriptor& b) {
   return std::popcount(a[0] ^ b[0]) + std::popcount(a[1] ^ b[1]) + std::popcount(a[2] ^ b[2]) +
          std::popcount(a[3] ^ b[3]);
@@ -20,8 +20,9 @@ inline constexpr int kDescriptorBits = 256;
 
 }  // namespace stillmap
 
-/// On a function that compares many descriptors: compiled twice, with and without the processor's
-/// population count, and chosen at load time. The results are the same integers.
+/// Marks a function that compares many descriptors. The compiler makes two versions, with and
+/// without the population count instruction, and the loader chooses. The results are the same
+/// integers.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
     !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
 #define STILLMAP_POPCOUNT_CLONES __attribute__((target_clones("popcnt", "default")))

@@ -26,7 +26,7 @@ struct Greatest {
 constexpr Least least;
 constexpr Greatest greatest;
 
-/// Does something for 0 to N - 1 in a row, not in a loop: loops round it can run on vectors then.
+/// Calls a function for 0 to N - 1, unrolled, so that the loops around it vectorise.
 template <std::size_t N, class Do>
 void for_each_index(const Do& act) {
   [&]<std::size_t... I>(std::index_sequence<I...>) {
@@ -35,13 +35,13 @@ void for_each_index(const Do& act) {
   (std::make_index_sequence<N>());
 }
 
-/// The greatest of the least values of the arcs of nine; with least and greatest exchanged, the
-/// least of the greatest. Two arcs that begin beside each other share eight values.
+/// The greatest of the least values of all arcs of nine; with least and greatest exchanged, the
+/// least of the greatest. Arcs that begin at adjacent pixels share eight values.
 template <class Inner, class Outer>
 [[gnu::always_inline]] inline Byte over_arcs(const std::array<Byte, kCircle>& p,
                                              const Inner& inner,
                                              const Outer& outer) {
-  std::array<Byte, 8> two, four, arcs;  // values from each odd one
+  std::array<Byte, 8> two, four, arcs;  // values of runs from each odd pixel
   for_each_index<8>([&](std::size_t i) { two[i] = inner(p[2 * i + 1], p[(2 * i + 2) % kCircle]); });
   for_each_index<8>([&](std::size_t i) { four[i] = inner(two[i], two[(i + 1) % 8]); });
   for_each_index<8>([&](std::size_t i) {
@@ -52,8 +52,8 @@ template <class Inner, class Outer>
                outer(outer(arcs[4], arcs[5]), outer(arcs[6], arcs[7])));
 }
 
-/// Of a row of pixels, where `rows` begin: that of the pixels in the middle, three above and three
-/// below. Without a branch, so that it runs on vectors.
+/// The scores of a row of pixels. `rows` are the row itself, with three rows above and three below.
+/// Branch-free, so that it vectorises.
 STILLMAP_VECTOR_CLONES
 void score_row(const std::array<const Byte*, 7>& rows, std::ptrdiff_t size, Byte* scores) {
   const Byte *r0 = rows[0], *r1 = rows[1], *r2 = rows[2], *r3 = rows[3];
@@ -83,8 +83,8 @@ void score_row(const std::array<const Byte*, 7>& rows, std::ptrdiff_t size, Byte
   }
 }
 
-/// Keeps of a row of scores those that are greater than all around; `rows` are the one above, the
-/// row and the one below, with a value more before and after each.
+/// Keeps the scores of a row that are greater than all eight neighbours. `rows` are the row above,
+/// the row and the row below, each with one more value at both ends.
 STILLMAP_VECTOR_CLONES
 void keep_peaks(const std::array<const Byte*, 3>& rows,
                 std::ptrdiff_t size,
@@ -100,7 +100,7 @@ void keep_peaks(const std::array<const Byte*, 3>& rows,
   }
 }
 
-/// Calls visit(x) for each value that is not 0: few are.
+/// Calls visit(x) for each value that is not 0. Few are.
 template <class Visit>
 void for_each_set(const std::vector<Byte>& values, const Visit& visit) {
   constexpr std::size_t kEight = 8;
@@ -125,8 +125,7 @@ cv::Mat1b corner_scores(const cv::Mat1b& image) {
   cv::Mat1b scores(image.size(), std::uint8_t{0});
   if (image.cols <= 2 * kRim) return scores;
   const int width = image.cols - 2 * kRim;
-  // What is left over of whole vectors would take as long as all of them: the last vector is one
-  // that overlaps the one before.
+  // The last vector overlaps the one before: a scalar remainder would take as long as all vectors.
   constexpr int kVector = 32;
   const int whole = width < kVector ? width : width - width % kVector;
   for (int y = kRim; y < image.rows - kRim; ++y) {

@@ -12,7 +12,7 @@ FeatureGrid::FeatureGrid(std::span<const Eigen::Vector2f> points_px, int width_p
       rows_(std::max(1, static_cast<int>(std::ceil(static_cast<float>(height_px) / kCellPx)))),
       cell_begin_(static_cast<std::size_t>(columns_ * rows_) + 1, 0),
       indices_(points_px.size()) {
-  // Counting sort: sizes, then begins, then the points by index.
+  // Counting sort: cell sizes, then cell begins, then the points by index.
   std::vector<std::uint32_t> cell_of(points_px.size());
   for (std::size_t i = 0; i < points_px.size(); ++i) {
     cell_of[i] =

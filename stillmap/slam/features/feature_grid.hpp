@@ -14,11 +14,11 @@ class FeatureGrid {
  public:
   FeatureGrid() = default;
 
-  /// Points outside the image (undistortion moves some there) fall into the cells at its border.
+  /// Points outside the image, where undistortion moves some, belong to the cells at its border.
   FeatureGrid(std::span<const Eigen::Vector2f> points_px, int width_px, int height_px);
 
   /// Calls `visit(index)` for every point whose cell touches the square of half side `radius_px`
-  /// round `center_px`: all points within the radius and some farther ones. Cells are visited row
+  /// around `center_px`: all points within the radius and some farther ones. Cells are visited row
   /// by row, points of a cell by index.
   template <class Visitor>
   void visit_near(const Eigen::Vector2f& center_px, float radius_px, Visitor&& visit) const {
@@ -26,7 +26,7 @@ class FeatureGrid {
     const int c0 = column(center_px.x() - radius_px), c1 = column(center_px.x() + radius_px);
     const int r0 = row(center_px.y() - radius_px), r1 = row(center_px.y() + radius_px);
     for (int r = r0; r <= r1; ++r) {
-      // The cells of a row are neighbours in memory: one run of indices.
+      // The cells of a row are consecutive in memory: one run of indices.
       const std::uint32_t begin = cell_begin_[static_cast<std::size_t>(r * columns_ + c0)];
       const std::uint32_t end = cell_begin_[static_cast<std::size_t>(r * columns_ + c1) + 1];
       for (std::uint32_t i = begin; i < end; ++i) visit(indices_[i]);
@@ -46,7 +46,7 @@ class FeatureGrid {
 
   int columns_ = 0;
   int rows_ = 0;
-  std::vector<std::uint32_t> cell_begin_;  // of each cell in indices_, and the end
+  std::vector<std::uint32_t> cell_begin_;  // begin of each cell in indices_, and the end
   std::vector<std::uint32_t> indices_;
 };
 

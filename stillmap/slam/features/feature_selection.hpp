@@ -9,7 +9,7 @@
 
 namespace stillmap {
 
-/// The features with `keep[i]` not 0, in their order. `keep` has a value per feature.
+/// The features with `keep[i]` not 0, in order. `keep` has one value per feature.
 [[nodiscard]] Features select_features(const Features& features,
                                        std::span<const std::uint8_t> keep,
                                        const CameraModel& camera);

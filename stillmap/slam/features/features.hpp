@@ -12,12 +12,13 @@
 
 namespace stillmap {
 
-/// The point features of one frame, as parallel arrays of equal length. Never changed once made.
+/// The point features of one frame, as parallel arrays of equal length. Never changed after
+/// construction.
 struct Features {
-  std::vector<Eigen::Vector2f> raw_px;    ///< where the image has them
+  std::vector<Eigen::Vector2f> raw_px;    ///< raw pixels in the image
   std::vector<Eigen::Vector2f> ideal_px;  ///< without lens distortion
   std::vector<float> sensor_depth_m;      ///< along the optical axis; 0 where unknown
-  // The same, moved to the instant that the frame's pose refers to: all geometry uses these.
+  // The same, moved to the time of the frame's pose (rolling shutter). All geometry uses these.
   std::vector<Eigen::Vector2f> px;
   std::vector<float> depth_m;
   std::vector<std::uint8_t> level;  ///< of the image pyramid; 0 is the full resolution

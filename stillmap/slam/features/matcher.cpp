@@ -33,7 +33,7 @@ struct BestTwo {
 
   [[nodiscard]] bool accepted(const MatchRules& rules) const {
     if (index == kNone || best > rules.max_distance) return false;
-    // A rival on another level is most likely the same corner again.
+    // The second best on another level is most likely the same corner.
     return best_level != second_level || best <= rules.max_ratio * second;
   }
 };
@@ -62,8 +62,9 @@ BestTwo best_feature(const Projection& projection,
 }
 
 struct AllPairs {
-  std::vector<BestTwo> best_of_a;         // per chosen feature of a
-  std::vector<std::uint32_t> nearest_to;  // per feature of b: place of the nearest chosen one
+  std::vector<BestTwo> best_of_a;  // per selected feature of a
+  std::vector<std::uint32_t>
+      nearest_to;  // per feature of b: position of the nearest selected feature
 };
 
 STILLMAP_POPCOUNT_CLONES
@@ -87,7 +88,7 @@ AllPairs compare_all(const Features& a,
   return pairs;
 }
 
-// Of the matches of one feature keeps the one of least distance; result sorted by query.
+// Keeps the match of least distance for each feature; the result is sorted by query.
 std::vector<FeatureMatch> one_to_one(std::vector<FeatureMatch> matches, std::size_t feature_count) {
   std::vector<std::uint32_t> winner(feature_count, kNone);
   for (std::uint32_t m = 0; m < matches.size(); ++m) {
@@ -148,7 +149,7 @@ std::vector<FeatureMatch> keep_consistent_rotations(std::span<const FeatureMatch
   std::ranges::stable_sort(order, [&](auto l, auto r) { return counts[l] > counts[r]; });
   std::array<bool, kBins> good{};
   for (std::size_t rank = 0; rank < 3; ++rank) {
-    // A bin far below the fullest holds chance matches.
+    // Bins with far fewer matches than the fullest hold chance matches.
     good[order[rank]] = counts[order[rank]] * 10 >= counts[order[0]];
   }
   std::vector<FeatureMatch> kept;

@@ -16,14 +16,14 @@
 namespace stillmap {
 namespace {
 
-constexpr int kBorderPx = kPatchRadiusPx + 2;  // a rotated, rounded patch stays inside
+constexpr int kBorderPx = kPatchRadiusPx + 2;  // keeps a rotated, rounded patch inside
 constexpr int kCellPx = 32;
 
 int cell_count(int length_px) {
   return std::max(1, length_px / kCellPx);
 }
 
-// Corners of a level's image; the mask is as large as the finest one.
+// The corners of the image of a level. The mask has the size of the finest level.
 void remove_excluded(std::vector<cv::KeyPoint>& corners, const cv::Mat1b& mask, cv::Size level) {
   const float scale_x = static_cast<float>(mask.cols) / static_cast<float>(level.width);
   const float scale_y = static_cast<float>(mask.rows) / static_cast<float>(level.height);
@@ -47,14 +47,14 @@ std::vector<float> pyramid_scales(const OrbConfig& config) {
 
 OrbExtractor::OrbExtractor(const OrbConfig& config, const CameraModel& camera)
     : config_(config), camera_(camera), scales_(pyramid_scales(config)) {
-  // Features are shared out in proportion to the levels' widths, as ORB does.
+  // Features are distributed in proportion to the widths of the levels, as in ORB.
   double total = 0;
   for (const float scale : scales_) total += 1.0 / scale;
   for (const float scale : scales_) {
     const cv::Size size(cvRound(static_cast<float>(camera.width_px) / scale),
                         cvRound(static_cast<float>(camera.height_px) / scale));
     if (size.width <= 2 * kBorderPx + kCellPx / 2 || size.height <= 2 * kBorderPx + kCellPx / 2) {
-      break;  // too small to hold a feature
+      break;  // too small for a feature
     }
     levels_.push_back({size, static_cast<int>(std::lround(config.features / scale / total))});
   }
@@ -66,7 +66,7 @@ ImageCorners OrbExtractor::corners(const GrayImage& gray) const {
   for (std::size_t i = 0; i < levels_.size(); ++i) {
     ImageCorners::Level level;
     if (i == 0) {
-      level.image = gray.mat;  // shared, only read
+      level.image = gray.mat;  // shared and never written
     } else {
       cv::resize(found.levels[i - 1].image, level.image, levels_[i].size, 0, 0, cv::INTER_LINEAR);
     }
@@ -83,7 +83,7 @@ std::vector<cv::KeyPoint> OrbExtractor::detect(const cv::Mat1b& image) const {
       kBorderPx, kBorderPx, image.cols - 2 * kBorderPx, image.rows - 2 * kBorderPx);
   std::vector<cv::KeyPoint> corners = local_maxima(scores, inner, config_.corner_threshold);
 
-  // Where a cell has none, weaker corners will do.
+  // Cells without a corner are searched for weaker corners.
   constexpr int kMargin = kBorderPx - kCornerCircleRadiusPx;
   const cv::Rect area(kMargin, kMargin, image.cols - 2 * kMargin, image.rows - 2 * kMargin);
   const int columns = cell_count(area.width), rows = cell_count(area.height);
@@ -111,8 +111,8 @@ void OrbExtractor::append(std::size_t number,
                           const ImageCorners::Level& level,
                           const std::vector<cv::KeyPoint>& corners,
                           Features& features) const {
-  // Sizes are rounded, so the scale of a level is not quite the nominal one. Pixels are squares
-  // with their centres at whole numbers: it is their edges, half a pixel off, that scale.
+  // Sizes are rounded, so that the scale of a level differs slightly from the nominal one. Pixel
+  // centres are at whole numbers; the edges, half a pixel off, are what scales.
   const cv::Mat1b& image = level.image;
   const float scale_x = static_cast<float>(camera_.width_px) / static_cast<float>(image.cols);
   const float scale_y = static_cast<float>(camera_.height_px) / static_cast<float>(image.rows);

@@ -21,21 +21,27 @@ struct OrbConfig {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("features", self.features, FieldInfo{"features sought in a frame", "", 50, 20000});
-    visit("levels", self.levels, FieldInfo{"levels of the image pyramid", "", 1, 16});
+    visit("features",
+          self.features,
+          common_setting(FieldInfo{"number of features to extract from a frame", "", 50, 20000}));
+    visit("levels", self.levels, FieldInfo{"number of levels of the image pyramid", "", 1, 16});
     visit("scale_factor",
           self.scale_factor,
-          FieldInfo{"ratio of one level's size to the next", "", 1.05, 2});
+          FieldInfo{"ratio of the sizes of two consecutive pyramid levels", "", 1.05, 2});
     visit("corner_threshold",
           self.corner_threshold,
-          FieldInfo{"brightness step of a corner", "grey levels", 2, 200});
+          FieldInfo{"difference of brightness that makes a corner (FAST)", "grey levels", 2, 200});
     visit("weak_corner_threshold",
           self.weak_corner_threshold,
-          FieldInfo{"the same where a cell has no corner", "grey levels", 1, 200});
+          FieldInfo{"the same, for image cells in which tracking.corner_threshold finds no corner",
+                    "grey levels",
+                    1,
+                    200});
   }
 };
 
-/// What features need of an image whatever is excluded from it: its pyramid, and all corners.
+/// The part of feature extraction that does not depend on excluded pixels: the image pyramid and
+/// all corners.
 struct ImageCorners {
   struct Level {
     cv::Mat1b image;
@@ -48,30 +54,30 @@ struct ImageCorners {
 /// Oriented FAST corners with rotated BRIEF descriptors (Rublee et al., "ORB", ICCV 2011) over an
 /// image pyramid, spread evenly over the image on each level.
 ///
-/// Remembers nothing of images: one extractor serves any number of threads.
+/// Keeps no state of images. Safe to use from several threads.
 class OrbExtractor {
  public:
   OrbExtractor(const OrbConfig& config, const CameraModel& camera);
 
-  /// The corners of an image of the camera's size: the part of the work that can be done before it
-  /// is known what is excluded. Its finest level is the image itself, not a copy.
+  /// The pyramid and corners of an image of the camera's size: the part of the work that needs no
+  /// excluded pixels. The finest level shares the pixels of `gray`.
   [[nodiscard]] ImageCorners corners(const GrayImage& gray) const;
 
-  /// Features at some of the corners, at ideal and raw pixels, each with the depth that `depth`,
-  /// of the camera's size, has there. None at a pixel of `excluded`: the rest of the image
-  /// gets all of them.
+  /// Features at the best corners, with ideal and raw pixels and the depth of `depth`, of the
+  /// camera's size, at the raw pixel. None at a pixel of `excluded`; the rest of the image then
+  /// gets the whole number of features.
   [[nodiscard]] Features extract(ImageCorners corners,
                                  const DepthImage& depth,
                                  const Mask& excluded = {}) const;
 
-  /// Both at once.
+  /// Both steps in one call.
   [[nodiscard]] Features extract(const GrayImage& gray,
                                  const DepthImage& depth,
                                  const Mask& excluded = {}) const {
     return extract(corners(gray), depth, excluded);
   }
 
-  /// Size of a pixel of each level in pixels of the full image.
+  /// The pixel size of each level, in pixels of the full image.
   [[nodiscard]] const std::vector<float>& level_scales() const { return scales_; }
 
  private:
@@ -93,7 +99,7 @@ class OrbExtractor {
   std::vector<Level> levels_;
 };
 
-/// Scales of a pyramid: 1, f, f^2, ...
+/// The scales of a pyramid: 1, f, f^2, ...
 [[nodiscard]] std::vector<float> pyramid_scales(const OrbConfig& config);
 
 }  // namespace stillmap

@@ -16,11 +16,11 @@ namespace {
 using Byte = std::uint8_t;
 constexpr int kReach = 3;
 
-// In 1/256, from the rim to the middle: together 256. All sums are exact: whole numbers below 2^24,
-// in floating point as well, where they are done for more values at once.
+// Weights in 1/256 from the rim to the middle; their sum is 256. All sums are whole numbers below
+// 2^24 and exact in floating point, too, which vectorises better.
 constexpr unsigned kRim = 18, kOuter = 34, kInner = 48, kMiddle = 56;
 
-/// Weighted sums of seven rows.
+/// The weighted sums of seven rows.
 STILLMAP_VECTOR_CLONES
 void sum_rows(const std::array<const Byte*, 7>& rows, std::ptrdiff_t size, float* sums) {
   const Byte *r0 = rows[0], *r1 = rows[1], *r2 = rows[2], *r3 = rows[3];
@@ -34,8 +34,8 @@ void sum_rows(const std::array<const Byte*, 7>& rows, std::ptrdiff_t size, float
   }
 }
 
-/// Weighted sums of seven sums beside each other, rounded to grey levels. There are three more sums
-/// before and after.
+/// The weighted sums of seven adjacent sums, rounded to grey levels. There are three more sums at
+/// both ends.
 STILLMAP_VECTOR_CLONES
 void sum_columns(const float* sums, std::ptrdiff_t size, Byte* __restrict blurred) {
   constexpr float kHalf = 32768.0F;
@@ -48,7 +48,7 @@ void sum_columns(const float* sums, std::ptrdiff_t size, Byte* __restrict blurre
   }
 }
 
-/// Mirrored at the first and the last, which are not doubled.
+/// An index mirrored at the first and the last element, which are not doubled.
 int mirrored(int i, int count) {
   const int before = std::abs(i);
   return before < count ? before : 2 * (count - 1) - before;

@@ -7,11 +7,11 @@
 namespace stillmap {
 namespace {
 
-// A cell of the image and its corners, a range of the array that all nodes share.
+// A cell of the image with its corners, a range of the array that all nodes share.
 struct Node {
   float x0, y0, x1, y1;
   std::size_t begin, end;
-  std::size_t number;  // in order of making, which settles ties
+  std::size_t number;  // in order of creation, which decides ties
 
   [[nodiscard]] std::size_t size() const { return end - begin; }
   [[nodiscard]] bool operator<(const Node& other) const {
@@ -38,7 +38,7 @@ bool on_one_spot(const Node& node, const std::vector<cv::KeyPoint>& corners) {
   return true;
 }
 
-// Above a where b is, so that a cut there always tells the two apart.
+// Greater than a if b is, so that a cut there always separates the two.
 float middle_of(float a, float b) {
   const float middle = 0.5F * (a + b);
   return middle > a ? middle : b;
@@ -51,7 +51,7 @@ std::vector<cv::KeyPoint> spread_evenly(std::vector<cv::KeyPoint> corners, int c
   if (count <= 0) return {};
 
   std::priority_queue<Node> nodes;  // the fullest on top
-  std::vector<Node> spots;          // with several corners on one spot, not to be split
+  std::vector<Node> spots;          // nodes whose corners share one position and cannot be split
   nodes.push(bounding_node(corners));
   std::size_t made = 1;
   const auto split = [&corners](std::size_t begin, std::size_t end, auto&& goes_first) {

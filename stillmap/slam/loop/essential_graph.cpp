@@ -10,19 +10,20 @@
 namespace stillmap {
 namespace {
 
-// Of an edge of 100 shared landmarks; others in proportion to the square root.
+// The standard deviations of an edge with 100 common landmarks; others scale with the square root
+// of the number.
 constexpr double kSigma_m = 0.01;
 constexpr double kSigma_rad = 0.005;
 
-// Errors of a loop that its matches have in common do not show in its sigmas. Measured on pairs of
-// views with true poses: half of the errors are within 1 sigma, 95 % within some 6.
+// The sigmas of a loop do not include errors common to its matches. Measured on pairs of views with
+// true poses: half of the errors are within 1 sigma, 95 % within about 6.
 constexpr double kLoopFactor = 3.0;
 constexpr double kMinLoopSigma_m = 0.005;
 constexpr double kMinLoopSigma_rad = 0.002;
 
 struct Pair {
   std::uint32_t from;
-  std::uint32_t to;  // the later
+  std::uint32_t to;  // the later key frame
   int shared;
 };
 
@@ -34,7 +35,7 @@ PoseGraphEdge loop_edge(std::uint32_t from, std::uint32_t to, const LoopEdge& lo
           std::max(kLoopFactor * loop.sigma_rad, kMinLoopSigma_rad)};
 }
 
-// Sets of what hangs together.
+// Disjoint sets of connected key frames (union-find).
 class Forest {
  public:
   explicit Forest(std::size_t size) : parent_(size) {
@@ -44,7 +45,7 @@ class Forest {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;
   }
-  /// False if they hung together before.
+  /// Joins two sets. False if they were one already.
   bool join(std::uint32_t a, std::uint32_t b) {
     a = root(a), b = root(b);
     parent_[std::max(a, b)] = std::min(a, b);
@@ -59,7 +60,7 @@ std::uint32_t place_of(const std::vector<KeyframeId>& keyframes, KeyframeId id) 
   return static_cast<std::uint32_t>(std::ranges::lower_bound(keyframes, id) - keyframes.begin());
 }
 
-// All pairs that share landmarks, most first, ties by place.
+// All pairs with common landmarks, those with most first, ties by position.
 std::vector<Pair> sharing_pairs(const Map& map, const std::vector<KeyframeId>& keyframes) {
   std::vector<Pair> pairs;
   for (std::uint32_t to = 0; to < keyframes.size(); ++to) {
@@ -130,7 +131,7 @@ void move_keyframes(Map& map, const std::map<KeyframeId, Eigen::Isometry3d>& T_w
     const auto moved = T_new_old.find(made_by);
     if (moved != T_new_old.end()) map.set_position(id, moved->second * landmark.p_world);
   }
-  // Directions and distances to them follow when all stand where they should.
+  // Viewing directions and distances follow once all poses are final.
   for (const LandmarkId id : map.landmark_ids()) map.refresh(id);
 }
 

@@ -19,7 +19,10 @@ struct EssentialGraphConfig {
     visit("min_shared",
           self.min_shared,
           FieldInfo{
-              "landmarks in common that tie two key frames when a loop is closed", "", 1, 100000});
+              "number of common landmarks that makes two key frames an edge of the essential graph",
+              "",
+              1,
+              100000});
   }
 };
 
@@ -27,22 +30,23 @@ struct EssentialGraphConfig {
 struct EssentialGraph {
   std::vector<KeyframeId> keyframes;  ///< per pose, by id; the first is held
   PoseGraph graph;
-  std::vector<std::uint32_t> loop_edges;  ///< indices of the loops' edges, in their order
+  std::vector<std::uint32_t> loop_edges;  ///< indices of the edges of the loops, in their order
 };
 
-/// The edges: a spanning tree along the most shared landmarks, all pairs that share `min_shared` or
-/// more, both as the poses are now; and the loops as they were measured, for key frames that are in
-/// that submap. Where nothing is shared with earlier key frames, the one before is the neighbour.
+/// Makes the essential graph of a submap. Its edges are a spanning tree along the most common
+/// landmarks and all pairs with at least `min_shared` common landmarks, both with the present
+/// relative poses, and the loops of the submap with their measured relative poses. A key frame
+/// without landmarks in common with earlier ones is tied to the one before.
 ///
-/// To be made before the landmarks of both ends of a new loop are merged (else the ends would hold
-/// each other where they are), with all earlier loops.
+/// To be made with all earlier loops, before the landmarks of both ends of a new loop are merged:
+/// common landmarks would tie the ends at their present poses.
 [[nodiscard]] EssentialGraph essential_graph(const Map& map,
                                              SubmapId submap,
                                              std::span<const LoopEdge> loops,
                                              const EssentialGraphConfig& config);
 
-/// Moves the key frames there, and each landmark with the key frame that made it (where that is
-/// gone, with the first that sees it).
+/// Moves the key frames to the new poses, and each landmark with the key frame that created it (if
+/// that is gone, with its first observer).
 void move_keyframes(Map& map, const std::map<KeyframeId, Eigen::Isometry3d>& T_world_keyframe);
 
 }  // namespace stillmap

@@ -21,7 +21,8 @@ std::vector<KeyframeId> keyframes_in(const Map& map, SubmapId submap) {
   return ids;
 }
 
-// The motion of what shares most landmarks with a key frame, else of what came before it.
+// The motion of the corrected key frame that shares most landmarks with a key frame, else of the
+// key frame before it.
 Eigen::Isometry3d neighbours_motion(const Map& map, const Motions& motions, KeyframeId id) {
   for (const CovisibleKeyframe& other : covisible_keyframes(map, id)) {
     const auto known = motions.find(other.id);
@@ -35,7 +36,7 @@ Motions motions_of_keyframes(const Map& map, const GlobalCorrection& correction)
   Motions motions;
   std::set<SubmapId> submaps;
   for (const auto& [id, T_world_camera] : correction.T_world_camera) {
-    if (!map.has(id)) continue;  // dropped since
+    if (!map.has(id)) continue;  // the key frame was dropped since
     motions[id] = T_world_camera * map.keyframe(id).T_world_camera.inverse();
     submaps.insert(map.keyframe(id).submap);
   }

@@ -5,14 +5,13 @@
 #include <set>
 
 #include "stillmap/slam/map/covisibility.hpp"
-#include "stillmap/slam/mapping/landmark_fusion.hpp"
 
 namespace stillmap {
 namespace {
 
-constexpr std::size_t kEndKeyframes = 10;  // of each end, whose landmarks are merged
+constexpr std::size_t kEndKeyframes = 10;  // key frames of each end whose landmarks are merged
 
-// The later submap moves: what was there first stays where it is.
+// The later submap moves; the earlier one keeps its coordinates.
 void join_submaps(Map& map, const LoopMatch& found) {
   const Keyframe& a = map.keyframe(found.edge.a);
   const Keyframe& b = map.keyframe(found.edge.b);
@@ -52,7 +51,7 @@ void merge_matches(Map& map, const LoopMatch& found) {
   }
 }
 
-// A key frame and those that share most landmarks with it.
+// A key frame with those that share most landmarks with it.
 std::vector<KeyframeId> end_of_loop(const Map& map, KeyframeId id) {
   std::vector<KeyframeId> end = {id};
   for (const CovisibleKeyframe& other : covisible_keyframes(map, id)) {
@@ -76,15 +75,15 @@ void merge_ends(Map& map,
                 const LoopMatch& found,
                 const CameraModel& camera,
                 const MeasurementModel& measure,
-                double radius_px) {
-  // Before the matches join them, so that each is a neighbourhood of its own.
+                const LandmarkFusionConfig& config) {
+  // Computed before the matches are merged, so that the neighbourhoods are separate.
   const std::vector<KeyframeId> earlier = end_of_loop(map, found.edge.a);
   const std::vector<KeyframeId> later = end_of_loop(map, found.edge.b);
   merge_matches(map, found);
   const std::vector<LandmarkId> old = landmarks_seen(map, earlier);
-  for (const KeyframeId id : later) fuse_landmarks(map, id, old, camera, measure, radius_px);
+  for (const KeyframeId id : later) fuse_landmarks(map, id, old, camera, measure, config);
   for (const KeyframeId id : earlier) {
-    fuse_landmarks(map, id, landmarks_seen(map, later), camera, measure, radius_px);
+    fuse_landmarks(map, id, landmarks_seen(map, later), camera, measure, config);
   }
   for (const std::vector<KeyframeId>& end : {earlier, later}) {
     for (const LandmarkId id : landmarks_seen(map, end)) map.refresh(id);
@@ -107,8 +106,8 @@ bool close_loop(Map& map,
     loops.pop_back();
     return false;
   }
-  merge_ends(map, found, camera, measure, config.fusion_radius_px);
-  (void)map.take_changes();  // of the whole map: nobody waits for them
+  merge_ends(map, found, camera, measure, config.fusion);
+  (void)map.take_changes();  // changes of the owner's map need not be reported
   return true;
 }
 

@@ -11,13 +11,12 @@
 
 namespace stillmap {
 
-/// Makes one place of the two ends of a loop: within a submap the key frames are moved so that they
-/// fit all loops (pose graph), else the later submap moves into the earlier; then the landmarks of
-/// both ends are merged.
+/// Closes a loop. Within a submap the key frames are moved to fit all loops (pose graph); between
+/// submaps the later one moves into the earlier. Then the landmarks of both ends are merged.
 ///
-/// False, with nothing done, where the other loops and the map contradict it. `loops` are those
-/// closed before; this one joins them when it is closed. `map` is the whole map, with no window of
-/// it being worked on.
+/// Does nothing and returns false if the other loops and the map contradict the loop. `loops` are
+/// the loops closed before; a closed loop is appended. `map` is the whole map; no window of it may
+/// be in work.
 [[nodiscard]] bool close_loop(Map& map,
                               std::vector<LoopEdge>& loops,
                               const LoopMatch& found,

@@ -5,6 +5,7 @@
 #include "stillmap/slam/loop/essential_graph.hpp"
 #include "stillmap/slam/loop/loop_gate.hpp"
 #include "stillmap/slam/loop/loop_verifier.hpp"
+#include "stillmap/slam/mapping/landmark_fusion.hpp"
 #include "stillmap/slam/optim/bundle_adjuster.hpp"
 #include "stillmap/slam/optim/pose_graph.hpp"
 
@@ -15,7 +16,7 @@ struct LoopConfig {
   int candidates = 3;
   double inverse_depth_sigma = 0.01;
   double max_edge_chi2 = 100;
-  double fusion_radius_px = 8;
+  LandmarkFusionConfig fusion{.radius_px = 8};
   int adjustment_lag_frames = 60;
   LoopGateConfig gate;
   LoopVerifierConfig verifier;
@@ -25,35 +26,34 @@ struct LoopConfig {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("enabled", self.enabled, FieldInfo{"whether places seen before close loops"});
+    visit("enabled",
+          self.enabled,
+          common_setting(FieldInfo{"whether loops are detected and closed"}));
     visit("candidates",
           self.candidates,
-          FieldInfo{"key frames that look most like the newest, which are asked", "", 1, 100});
-    visit(
-        "inverse_depth_sigma",
-        self.inverse_depth_sigma,
-        FieldInfo{
-            "error of the inverse depth where loops are judged and the submap is adjusted to them",
-            "1/m",
-            1e-4,
-            1});
-    visit("max_edge_chi2",
-          self.max_edge_chi2,
-          FieldInfo{"a loop that all others contradict by more is not closed (squared error in "
-                    "sigmas)",
+          FieldInfo{"number of key frames from the place index that are examined per key frame",
                     "",
                     1,
-                    1e9});
-    visit("fusion_radius_px",
-          self.fusion_radius_px,
-          FieldInfo{"search for a landmark of one end of a loop in the other, on the finest level",
-                    "px",
-                    0.5,
-                    50});
+                    100});
+    visit("inverse_depth_sigma",
+          self.inverse_depth_sigma,
+          FieldInfo{"measurement.inverse_depth_sigma for loop verification and global adjustment",
+                    "1/m",
+                    1e-4,
+                    1});
+    visit(
+        "max_edge_chi2",
+        self.max_edge_chi2,
+        FieldInfo{
+            "squared error, in sigmas, above which a loop contradicts the others and is not closed",
+            "",
+            1,
+            1e9});
+    LandmarkFusionConfig::fields(self.fusion, visit);
     visit("adjustment_lag_frames",
           self.adjustment_lag_frames,
-          FieldInfo{"the adjustment of the whole map to a loop reaches it so many frames later, or "
-                    "as soon then as no mapping is under way",
+          FieldInfo{"number of frames after which a global adjustment is applied, or later while "
+                    "mapping is under way",
                     "frames",
                     0,
                     100000});

@@ -6,7 +6,7 @@
 namespace stillmap {
 namespace {
 
-constexpr int kMinShared = 10;  // fewer landmarks in common may be wrong ones
+constexpr int kMinShared = 10;  // fewer common landmarks may be wrong matches
 
 std::vector<KeyframeId> neighbours(const Map& map, KeyframeId id) {
   std::vector<KeyframeId> ids;

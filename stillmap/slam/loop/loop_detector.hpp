@@ -11,9 +11,8 @@
 
 namespace stillmap {
 
-/// Finds, key frame after key frame, the places that were seen before: candidates by appearance,
-/// which several key frames in a row must find, decided by geometry. The earlier key frame may be
-/// of another submap.
+/// Detects loops, key frame by key frame: candidates by appearance, which several consecutive key
+/// frames must find, are verified by geometry. The earlier key frame may be in another submap.
 class LoopDetector {
  public:
   /// `measure`: see LoopVerifier.
@@ -22,13 +21,13 @@ class LoopDetector {
                MeasurementModel measure,
                std::uint32_t seed);
 
-  /// To be called for every key frame, in their order, once its landmarks are mapped. `places`
-  /// holds all key frames of the map, also the newest. The match's `a` is the earlier key frame.
+  /// To be called for every key frame, in order, once its map update is applied. `places` must have
+  /// all key frames of the map, including the newest. `a` of the result is the earlier key frame.
   [[nodiscard]] std::optional<LoopMatch> advance(const Map& map,
                                                  const PlaceIndex& places,
                                                  KeyframeId newest);
 
-  /// After a loop was closed, or tracking was lost.
+  /// Starts again. To be called after a loop was closed, and when tracking was lost.
   void clear() { gate_.clear(); }
 
  private:

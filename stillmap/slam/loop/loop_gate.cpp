@@ -17,7 +17,7 @@ bool meet(const std::vector<KeyframeId>& a, const std::vector<KeyframeId>& b) {
 
 }  // namespace
 
-// The longest chain that the candidate goes on with, one longer; else a new one.
+// The longest chain that the candidate continues, extended by it; else a new chain.
 LoopGate::Chain LoopGate::extended(const GateCandidate& candidate) const {
   Chain result;
   result.group = candidate.neighbours;
@@ -37,7 +37,7 @@ std::vector<KeyframeId> LoopGate::advance(std::span<const GateCandidate> candida
     next.push_back(extended(candidate));
     if (next.back().length >= config_.consecutive) passed.push_back(candidate.keyframe);
   }
-  // A chain that nobody went on with waits for a while.
+  // A chain that no candidate continued is kept for a while.
   const std::size_t found = next.size();
   for (Chain& chain : chains_) {
     const bool continued = std::any_of(

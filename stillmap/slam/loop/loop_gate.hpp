@@ -19,42 +19,43 @@ struct LoopGateConfig {
   static void fields(Self& self, Visitor& visit) {
     visit("consecutive",
           self.consecutive,
-          FieldInfo{"key frames that must find one place before it counts", "key frames", 1, 100});
+          FieldInfo{
+              "number of consecutive key frames that must find one place", "key frames", 1, 100});
     visit("max_missed",
           self.max_missed,
-          FieldInfo{"key frames between them that may find nothing", "key frames", 0, 100});
+          FieldInfo{"number of key frames in between that may miss it", "key frames", 0, 100});
   }
 };
 
-/// A key frame that looks like the current one, with the key frames that share landmarks with it.
+/// A key frame that looks like the current one, with its covisible key frames.
 struct GateCandidate {
   KeyframeId keyframe;
   std::vector<KeyframeId> neighbours;  ///< in any order
 };
 
-/// Lets a candidate pass when key frames one after another have found the same place: a chain of
-/// candidates each of which is, or shares landmarks with, the one before. One image that looks like
-/// another by chance is no loop; some in a row that look like neighbours hardly are by chance.
+/// Passes a candidate when consecutive key frames have found the same place: a chain of candidates
+/// each of which is, or is covisible with, the one before. A single image may look like another by
+/// chance; several in a row hardly look like neighbours by chance.
 ///
-/// A pure state machine over ids: time does not matter, nor the order of the candidates'
-/// neighbours.
+/// A state machine over ids that depends neither on time nor on the order of neighbours.
 class LoopGate {
  public:
   explicit LoopGate(const LoopGateConfig& config) : config_(config) {}
 
-  /// The candidates of the next key frame, best first, perhaps none; to be called for every key
-  /// frame. Returns those whose place enough key frames in a row have found, in the same order.
+  /// Takes the candidates of the next key frame, best first, possibly none; to be called for every
+  /// key frame. Returns those whose place enough consecutive key frames have found, in the same
+  /// order.
   [[nodiscard]] std::vector<KeyframeId> advance(std::span<const GateCandidate> candidates);
 
-  /// After a loop was closed, or tracking was lost: all begins anew.
+  /// Starts again. To be called after a loop was closed, and when tracking was lost.
   void clear() { chains_.clear(); }
 
  private:
-  /// A place that was found by the last key frames.
+  /// A place that recent key frames found.
   struct Chain {
     std::vector<KeyframeId> group;  // sorted: the last candidate and its neighbours
-    int length = 0;                 // key frames that found it
-    int missed = 0;                 // key frames since the last that did
+    int length = 0;                 // number of key frames that found it
+    int missed = 0;                 // number of key frames since the last that found it
   };
 
   [[nodiscard]] Chain extended(const GateCandidate& candidate) const;

@@ -44,7 +44,8 @@ bool LoopStage::close(Map& map,
 bool LoopStage::apply_due(Map& map, std::int64_t frame) {
   bool moved = false;
   for (const auto& [number, correction] : adjustments_.collect_due(frame)) {
-    if (number != closed_) continue;  // a later loop has moved the map, and its adjustment follows
+    if (number != closed_)
+      continue;  // a later loop has moved the map and has an adjustment of its own
     apply_correction(map, correction);
     moved = true;
   }

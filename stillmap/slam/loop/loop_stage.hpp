@@ -14,13 +14,14 @@
 
 namespace stillmap {
 
-/// Knows which places the key frames show, closes loops, and adjusts the whole submap after each.
+/// Keeps the place index of the key frames, detects and closes loops, and adjusts the submap after
+/// each.
 ///
-/// All calls that may move the map are made while no window of it is being worked on.
+/// Calls that may move the map must be made while no window of it is in work.
 class LoopStage {
  public:
-  /// `measure` trusts depth as far as the sensor earns it. Only the adjustment of the submap may
-  /// run on a thread of its own. The same bits either way.
+  /// `measure` is the measurement model of loops (loop_measurement_model). Only the global
+  /// adjustment may run on another thread. The same bits either way.
   LoopStage(const LoopConfig& config,
             const CameraModel& camera,
             const MeasurementModel& measure,
@@ -35,24 +36,24 @@ class LoopStage {
     places_.add(keyframe.id, keyframe.features->descriptors);
   }
   void remove_keyframe(KeyframeId id) { places_.remove(id); }
-  /// The place index of a map that is there from the beginning.
+  /// Sets the place index of a loaded map.
   void set_places(PlaceIndex places) { places_ = std::move(places); }
   void tracking_lost() { detector_.clear(); }
 
-  /// Looks for a loop that ends in the newest key frame, to be called for each, and closes it: the
-  /// map is moved, its ends are merged, and an adjustment of the submap begins. Says whether it
-  /// closed one, which is then the last of `loops`, all those of this map.
+  /// Looks for a loop that ends in the newest key frame and closes it: moves the map, merges the
+  /// ends, and begins a global adjustment. To be called for each key frame. Returns whether a loop
+  /// was closed, which is then the last of `loops`, the loops of the map.
   bool close(Map& map, std::vector<LoopEdge>& loops, KeyframeId newest, std::int64_t frame);
 
-  /// Brings adjustments that are due into the map. Says whether there was one.
+  /// Applies the adjustments that are due. Returns whether there was one.
   bool apply_due(Map& map, std::int64_t frame);
 
-  /// At the end: adjusts a submap once more if this run has closed a loop, with all that has been
-  /// seen since.
+  /// Adjusts a submap a last time if this run has closed a loop. To be called at the end.
   void finish(Map& map, SubmapId submap);
 
  private:
-  using NumberedCorrection = std::pair<int, GlobalCorrection>;  // of the n-th loop
+  // number of the loop, and its correction
+  using NumberedCorrection = std::pair<int, GlobalCorrection>;
 
   LoopConfig config_;
   CameraModel camera_;

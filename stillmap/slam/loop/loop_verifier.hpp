@@ -21,41 +21,59 @@ struct LoopVerifierConfig {
   int min_inliers = 40;
   double min_share = 0.2;
   double max_sigma_m = 0.1;
+  double search_radius_px = 6;
+  MatchRules appearance_match{.max_distance = 60, .max_ratio = 0.85};
+  MatchRules search_match{.max_distance = 64};
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("iterations", self.iterations, FieldInfo{"of RANSAC, at most", "", 1, 100000});
+    visit("iterations",
+          self.iterations,
+          FieldInfo{"greatest number of RANSAC iterations", "", 1, 100000});
     visit("min_matches",
           self.min_matches,
-          FieldInfo{"by appearance that have one rigid motion in common", "", 4, 10000});
-    visit("min_inliers", self.min_inliers, FieldInfo{"that prove a loop", "", 4, 10000});
+          FieldInfo{
+              "number of matches by appearance that must agree on one rigid motion", "", 4, 10000});
+    visit("min_inliers",
+          self.min_inliers,
+          FieldInfo{"number of matches that confirm a loop", "", 4, 10000});
     visit("min_share",
           self.min_share,
-          FieldInfo{"of what one image should see of the other's points, found there", "", 0, 1});
+          FieldInfo{"share of the other image's visible points that must be matched", "", 0, 1});
     visit("max_sigma_m",
           self.max_sigma_m,
-          FieldInfo{"error of the position that the matches leave, at most", "m", 0, 10});
+          FieldInfo{"greatest standard deviation of the relative position", "m", 0, 10});
+    visit(
+        "search_radius_px",
+        self.search_radius_px,
+        FieldInfo{"search radius for further matches from the motion, at the finest pyramid level",
+                  "px",
+                  0.5,
+                  100});
+    visit.group("appearance_match", self.appearance_match);
+    visit.group("search_match", self.search_match);
   }
 };
 
-/// Decides from geometry whether two images show one place, and how they stand to each other.
+/// Decides by geometry whether two images show one place, and estimates their relative pose.
 ///
-/// Matches by appearance that a rigid motion explains (RANSAC over three matches; a match agrees
-/// when the point of each side falls, at its depth, where the other has its feature); the pose is
-/// refined, the other matches are looked for where it says, and the pose is refined with them. A
-/// loop needs enough of them, and a fair share of what the one image should see of the other: two
-/// desks of one make have a desk in common but not what stands round it.
+/// Features are matched by appearance, and RANSAC over three matches finds the rigid motion that
+/// most matches agree with: the point of each view projects, at its depth, to the feature of the
+/// other. The pose is refined, further matches are searched from it, and it is refined with them. A
+/// loop needs a number of matches, and a share of the points of one image that should be visible in
+/// the other: two desks of one make have the desk in common, but not their surroundings.
 class LoopVerifier {
  public:
-  /// `measure` should trust depths as far as the sensor earns it, with an inverse depth sigma of
-  /// about 0.01: before a wall, pixels alone hardly tell a step aside from a turn.
+  /// `measure` should give depth its full weight, with an inverse depth sigma of about 0.01: before
+  /// a wall pixels alone hardly distinguish a step to the side from a turn.
   LoopVerifier(const LoopVerifierConfig& config,
                const CameraModel& camera,
                MeasurementModel measure,
                std::uint32_t seed);
 
-  /// Nothing where the views are not of one place, as far as can be told. `frame`: a's, from which
-  /// (with the seed) the random draws follow; the same input gives the same bits.
+  /// The match of two views; nothing unless they are confirmed to show one place. `frame` is the
+  /// frame of a, which with the seed determines the random draws. The same input gives the same
+  /// bits.
   [[nodiscard]] std::optional<LoopMatch> verify(FrameId frame,
                                                 const LoopView& a,
                                                 const LoopView& b) const;

@@ -9,15 +9,15 @@
 
 namespace stillmap {
 
-/// What a key frame brings to the verification of a loop.
+/// The input of loop verification from one key frame.
 struct LoopView {
   FeaturesPtr features;
-  /// Per feature the point it sees, in the camera's frame, where one is known.
+  /// For each feature its point in camera coordinates, if known.
   std::vector<std::optional<Eigen::Vector3d>> p_camera;
-  KeyframeId keyframe;  ///< invalid for a view that is of none
+  KeyframeId keyframe;  ///< invalid for a view of no key frame
 };
 
-/// The points are those of the key frame's landmarks, else what the sensor's depth says.
+/// Makes the view of a key frame. Points are those of its landmarks, else from the sensor's depth.
 [[nodiscard]] LoopView loop_view(const Keyframe& keyframe,
                                  const Map& map,
                                  const CameraModel& camera,

@@ -12,11 +12,12 @@ struct CovisibleKeyframe {
   int shared_landmarks = 0;
 };
 
-/// The other key frames that see landmarks of `keyframe`, most shared first, ties by id.
+/// The other key frames that observe landmarks of `keyframe`, those with most common landmarks
+/// first, ties by id.
 [[nodiscard]] std::vector<CovisibleKeyframe> covisible_keyframes(const Map& map,
                                                                  KeyframeId keyframe);
 
-/// The same for a set of landmarks: the key frames that see most of them first.
+/// The key frames that observe some of the landmarks, those with most of them first, ties by id.
 [[nodiscard]] std::vector<CovisibleKeyframe> keyframes_seeing(
     const Map& map, std::span<const LandmarkId> landmarks);
 

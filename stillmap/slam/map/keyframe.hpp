@@ -12,19 +12,20 @@
 
 namespace stillmap {
 
-/// A frame that the map keeps: its pose, its features and which landmarks they see. No images.
+/// A frame kept in the map: its pose, its features and the landmarks that they observe. Has no
+/// images.
 struct Keyframe {
   KeyframeId id;
   FrameId frame;
   Stamp stamp;
   SubmapId submap{0};
-  bool is_origin = false;  ///< the first of its submap, which adjustment holds where it is
+  bool is_origin = false;  ///< the first of its submap; adjustment keeps its pose
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   FeaturesPtr features;
-  std::vector<LandmarkId> landmarks;  ///< per feature; invalid where it sees none
+  std::vector<LandmarkId> landmarks;  ///< per feature; invalid where it observes none
 };
 
-/// The features that see a landmark, in order.
+/// The features that observe a landmark, in order.
 [[nodiscard]] inline std::vector<std::uint32_t> features_with_landmark(const Keyframe& keyframe) {
   std::vector<std::uint32_t> features;
   for (std::uint32_t i = 0; i < keyframe.landmarks.size(); ++i) {

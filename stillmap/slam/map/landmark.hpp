@@ -18,20 +18,21 @@ struct Observation {
   [[nodiscard]] bool operator==(const Observation&) const = default;
 };
 
-/// A point of the world that key frames see.
+/// A 3-D point that key frames observe.
 struct Landmark {
   LandmarkId id;
   Eigen::Vector3d p_world = Eigen::Vector3d::Zero();
-  std::vector<Observation> observations;  ///< by key frame, at most one each, never empty
+  std::vector<Observation> observations;  ///< by key frame, at most one each; never empty
   KeyframeId created_by;
 
   // Derived from the observations by Map::refresh().
-  Descriptor descriptor{};                                      ///< nearest to all the others
-  Eigen::Vector3d viewing_direction = Eigen::Vector3d::Zero();  ///< mean, from camera to point
-  double min_distance_m = 0;  ///< nearer or farther its corner falls off the pyramid
+  Descriptor descriptor{};  ///< the one with the least median distance to the others
+  /// mean direction from camera to point
+  Eigen::Vector3d viewing_direction = Eigen::Vector3d::Zero();
+  double min_distance_m = 0;  ///< at other distances its corner is on no pyramid level
   double max_distance_m = 0;
 
-  // How often tracking expected to see it, and did.
+  // The numbers of frames in which tracking expected it, and found it.
   int times_expected = 1;
   int times_found = 1;
 };

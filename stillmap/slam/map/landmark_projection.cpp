@@ -8,7 +8,7 @@
 namespace stillmap {
 namespace {
 
-// The level on which a corner that is on level 0 at `max_distance_m` appears at `distance_m`.
+// The pyramid level, at `distance_m`, of a corner that is on level 0 at `max_distance_m`.
 int predict_level(const std::vector<float>& level_scales,
                   double max_distance_m,
                   double distance_m) {

@@ -24,20 +24,21 @@ void insert_observation(Landmark& landmark, Observation observation) {
   landmark.observations.insert(at, observation);
 }
 
-// The descriptor with the least median distance to the others: an outlier is never chosen.
+// The descriptor with the least median distance to the others. Never an outlier.
 STILLMAP_POPCOUNT_CLONES
 std::size_t most_central(std::span<const Descriptor> descriptors) {
   std::size_t best = 0;
   int best_median = std::numeric_limits<int>::max();
   std::vector<int> distances(descriptors.size());
   for (std::size_t i = 0; i < descriptors.size(); ++i) {
-    std::size_t less = 0;  // distances than the best median
+    std::size_t less = 0;  // number of distances below the best median
     for (std::size_t j = 0; j < descriptors.size(); ++j) {
       distances[j] = hamming_distance(descriptors[i], descriptors[j]);
       less += distances[j] < best_median ? 1 : 0;
     }
     const std::size_t middle = (distances.size() - 1) / 2;
-    if (less <= middle) continue;  // so the median is none; to find it takes most of the time
+    if (less <= middle)
+      continue;  // the median is no less; computing it would take most of the time
     const auto median = distances.begin() + static_cast<std::ptrdiff_t>(middle);
     std::ranges::nth_element(distances, median);
     best_median = *median;
@@ -252,7 +253,7 @@ void Map::refresh(LandmarkId id) {
   landmark.viewing_direction.normalize();
   landmark.descriptor = descriptors[most_central(descriptors)];
 
-  // Seen on level l at distance d, the corner is on level 0 at d * scale(l).
+  // A corner on level l at distance d is on level 0 at d * scale(l).
   const Observation& first = landmark.observations.front();
   const Keyframe& keyframe = keyframes_.at(first.keyframe);
   const double distance = (landmark.p_world - keyframe.T_world_camera.translation()).norm();
@@ -303,8 +304,8 @@ MapUpdate Map::take_changes() {
 void Map::apply(const MapUpdate& update) {
   for (const auto& [gone, into] : update.merged_landmarks) {
     merged_into_[gone] = into;
-    // Both exist at least for their counts: one that was made in the window begins with fresh ones,
-    // and is filled in or removed below.
+    // Creates the landmarks that the window created, so that both have counts; they are filled in
+    // or removed below.
     Landmark& target = landmarks_[into];
     const Landmark& source = landmarks_[gone];
     target.times_expected += source.times_expected;
@@ -333,7 +334,7 @@ void Map::check_consistency() const {
     STILLMAP_CHECK(keyframe.landmarks.size() == keyframe.features->size());
     for (std::uint32_t i = 0; i < keyframe.landmarks.size(); ++i) {
       const Landmark* landmark = find(keyframe.landmarks[i]);
-      if (landmark == nullptr) continue;  // none, or outside this window
+      if (landmark == nullptr) continue;  // no landmark, or outside this window
       const auto at = find_observation(*landmark, id);
       STILLMAP_CHECK(at != landmark->observations.end() && at->feature == i);
     }

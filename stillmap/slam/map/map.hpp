@@ -15,76 +15,79 @@
 
 namespace stillmap {
 
-/// Key frames and landmarks, by id: their one owner.
+/// The only owner of key frames and landmarks, which have ids.
 ///
-/// Everyone else holds ids and asks. Both directions of an observation (key frame -> landmark,
-/// landmark -> key frame) change together. Covisibility is not stored but derived
-/// (covisibility.hpp).
+/// All other code holds ids. Both directions of an observation (key frame -> landmark, landmark ->
+/// key frame) change together. Covisibility is derived, not stored (covisibility.hpp).
 ///
-/// A worker gets a window(): a map of its own, cut out of this one, on which it works with the same
-/// operations. What it changed comes back as a MapUpdate, which the owner applies at a frame that
-/// was fixed beforehand. Meanwhile the owner changes nothing but tracking's counts.
+/// A worker gets a window(), a separate map cut out of this one, and works on it with the same
+/// operations. It returns its changes as a MapUpdate, which the owner applies at a frame fixed
+/// beforehand. Until then the owner changes nothing but the counts of tracking.
 class Map {
  public:
-  /// `level_scales`: size of a pixel of each pyramid level, as the extractor has them.
+  /// `level_scales` are the pixel sizes of the pyramid levels of the extractor.
   explicit Map(std::vector<float> level_scales) : level_scales_(std::move(level_scales)) {}
 
-  /// The map of these parts, whose key frames' lists of landmarks are made anew. They may come from
-  /// anywhere: throws Error, in one line that starts with `place`, for parts of no map.
+  /// Makes a map of parts; the key frames' lists of landmarks are rebuilt. Parts need not be
+  /// trusted: throws Error, in one line that begins with `place`, for parts that form no map.
   [[nodiscard]] static Map from_parts(MapParts parts, const std::string& place);
-  /// A copy of what it consists of. Not for windows.
+  /// The parts of the map, as copies. Not for windows.
   [[nodiscard]] MapParts parts() const;
 
   [[nodiscard]] const std::map<KeyframeId, Keyframe>& keyframes() const { return keyframes_; }
   [[nodiscard]] const Keyframe& keyframe(KeyframeId id) const { return keyframes_.at(id); }
   [[nodiscard]] bool has(KeyframeId id) const { return keyframes_.contains(id); }
-  /// The submaps that have key frames, sorted.
+  /// The submaps with key frames, sorted.
   [[nodiscard]] std::vector<SubmapId> submaps() const;
   [[nodiscard]] std::size_t landmark_count() const { return landmarks_.size(); }
   [[nodiscard]] const Landmark& landmark(LandmarkId id) const { return landmarks_.at(id); }
-  /// Null when there is none (any more).
+  /// The landmark of an id; null if there is none, or no longer.
   [[nodiscard]] const Landmark* find(LandmarkId id) const;
   [[nodiscard]] std::vector<LandmarkId> landmark_ids() const;  ///< sorted
   [[nodiscard]] const std::vector<float>& level_scales() const { return level_scales_; }
-  /// The landmark that `id` was merged into, over any number of merges; invalid if that is gone.
+  /// The landmark into which `id` was merged, over any number of merges; invalid if that was
+  /// removed.
   [[nodiscard]] LandmarkId resolve(LandmarkId id) const;
-  /// Pose of a key frame, dropped ones included. The id was once in the map.
+  /// The pose of a key frame, present or dropped. The id must have been in the map.
   [[nodiscard]] Eigen::Isometry3d T_world_keyframe(KeyframeId id) const;
-  /// The key frame itself, or the one that a dropped one is fixed to.
+  /// The key frame itself, or the anchor of a dropped key frame.
   [[nodiscard]] Anchor anchor(KeyframeId id) const;
 
-  /// Sets its id and whether it is an origin; its landmark list becomes empty.
+  /// Adds a key frame, sets its id and origin flag, and empties its list of landmarks.
   KeyframeId add_keyframe(Keyframe keyframe);
-  /// A new landmark seen by feature `feature` of `keyframe`.
+  /// Adds a landmark with its first observation, `seen_by`.
   LandmarkId add_landmark(const Eigen::Vector3d& p_world, Observation seen_by);
-  /// False, with nothing done, if the key frame sees the landmark already or the feature is taken.
+  /// Adds an observation. Does nothing and returns false if the key frame already observes the
+  /// landmark or the feature observes another.
   bool add_observation(LandmarkId landmark, Observation observation);
-  /// The landmark goes too when it was the last one.
+  /// Removes an observation, and the landmark with its last observation.
   void remove_observation(LandmarkId landmark, KeyframeId keyframe);
   void remove_landmark(LandmarkId id);
-  /// `gone` becomes part of `into`; where a key frame sees both, `into`'s feature stays.
+  /// Merges landmark `gone` into `into`. If a key frame observes both, the observation of `into`
+  /// stays.
   void merge_landmarks(LandmarkId gone, LandmarkId into);
-  /// Drops a key frame that is no origin; frames that refer to it are fixed to `anchor`.
+  /// Drops a key frame that is no origin. Frames that refer to it are fixed to `anchor`.
   void remove_keyframe(KeyframeId id, KeyframeId anchor);
   void set_pose(KeyframeId id, const Eigen::Isometry3d& T_world_camera);
   void set_position(LandmarkId id, const Eigen::Vector3d& p_world);
-  /// Moves all that is in the submap `gone` into another, which then has one origin as before. Not
-  /// for windows.
+  /// Moves everything in submap `gone` into another submap, which keeps its one origin. Not for
+  /// windows.
   void join_submaps(SubmapId gone, SubmapId into, const Eigen::Isometry3d& T_into_gone);
-  /// Brings descriptor, viewing direction and distance range up to the observations.
+  /// Updates descriptor, viewing direction and distance range from the observations.
   void refresh(LandmarkId id);
   void count_expected(LandmarkId id) { ++landmarks_.at(id).times_expected; }
   void count_found(LandmarkId id) { ++landmarks_.at(id).times_found; }
 
-  /// A map of its own of `core`, the landmarks these see, and all other key frames that see one of
-  /// those; the latter may refer to landmarks that are not in the window (find() gives null).
-  /// `core` key frames may be changed in every way, the others not dropped.
+  /// A separate map of the key frames `core`, their landmarks, and all other key frames that
+  /// observe one of these landmarks. The others may refer to landmarks outside the window (find()
+  /// returns null). Key frames of `core` may be changed in every way; the others must not be
+  /// dropped.
   [[nodiscard]] Map window(std::span<const KeyframeId> core) const;
-  /// What changed since this map was made or changes were last taken.
+  /// The changes since this map was made or changes were last taken.
   [[nodiscard]] MapUpdate take_changes();
   void apply(const MapUpdate& update);
 
-  /// Throws InternalError when an invariant does not hold. For tests.
+  /// Throws InternalError for a violated invariant. For tests.
   void check_consistency() const;
 
  private:

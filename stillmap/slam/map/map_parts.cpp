@@ -17,7 +17,7 @@ namespace {
 constexpr int kMaxTimes = 1 << 30;
 
 bool is_number(double value) {
-  return std::abs(value) <= kMaxCoordinate_m;  // not so for NaN
+  return std::abs(value) <= kMaxCoordinate_m;  // false for NaN
 }
 
 bool are_numbers(std::span<const float> values) {
@@ -139,10 +139,11 @@ class PartsCheck {
             "a feature's level");
   }
 
-  // Each chain leads to a key frame: as anchors that are known to do so spread, all are reached.
+  // Every chain of anchors must lead to a key frame: follows each chain and marks its members.
   void check_anchors() const {
     const auto& dropped = parts_.dropped_keyframes;
-    std::vector<std::uint8_t> state(dropped.size(), 0);  // 1: on the way, 2: leads to a key frame
+    std::vector<std::uint8_t> state(dropped.size(),
+                                    0);  // 1: on the current chain, 2: leads to a key frame
     std::vector<std::size_t> way;
     for (std::size_t start = 0; start < dropped.size(); ++start) {
       way.clear();

@@ -12,8 +12,8 @@
 
 namespace stillmap {
 
-/// All that a map consists of, in lists: what is saved of it. Which landmarks were merged is no
-/// part of it, nor are changes that nobody has taken.
+/// The parts of a map as lists, for saving. They do not have the history of merged landmarks, nor
+/// changes that were not taken.
 struct MapParts {
   std::vector<float> level_scales;
   std::vector<Keyframe> keyframes;                               ///< by id
@@ -23,28 +23,27 @@ struct MapParts {
   LandmarkId next_landmark{0};
 };
 
-/// Ids of key frames, landmarks and submaps are less.
+/// The upper bound of ids of key frames, landmarks and submaps.
 inline constexpr std::uint32_t kMaxId = std::uint32_t{1} << 31U;
-/// Features of a key frame; the place index can name no more.
+/// The greatest number of features of a key frame; the place index can count no more.
 inline constexpr std::size_t kMaxFeatures = 65535;
-/// Beyond, squares and sums would lose all meaning.
+/// The greatest coordinate. Beyond it squares and sums lose their precision.
 inline constexpr double kMaxCoordinate_m = 1e9;
 
-/// Whether it is a rotation, to 1e-6, and a place within kMaxCoordinate_m; false for what is no
-/// number.
+/// Whether a pose is a rotation, to 1e-6, and a position within kMaxCoordinate_m. False for NaN.
 [[nodiscard]] bool is_rigid(const Eigen::Isometry3d& T);
 
-/// Whether the time is a number and the text, if any, one short word.
+/// Whether the time is finite and the text, if any, one short word.
 [[nodiscard]] bool is_stamp(const Stamp& stamp);
 
-/// Throws Error, in one line that starts with `place`, for parts that are of no map: ids that are
-/// not in order or refer to nothing, poses that are none, arrays of different length, a submap
-/// without its one origin, anchors that lead to no key frame, numbers that mean nothing. The key
-/// frames' lists of landmarks are not looked at: see linked().
+/// Throws Error, in one line that begins with `place`, for parts that form no map: ids out of order
+/// or of missing items, invalid poses, arrays of different length, a submap without its one origin,
+/// anchors that lead to no key frame, impossible numbers. Ignores the key frames' lists of
+/// landmarks; see linked().
 void check_parts(const MapParts& parts, const std::string& place);
 
-/// The parts with the key frames' lists of landmarks made from the landmarks' observations. Throws
-/// Error when a feature sees two. The parts are checked.
+/// The parts with the key frames' lists of landmarks rebuilt from the observations. Throws Error
+/// when a feature observes two landmarks. The parts must have passed check_parts().
 [[nodiscard]] MapParts linked(MapParts parts, const std::string& place);
 
 }  // namespace stillmap

@@ -9,17 +9,17 @@
 
 namespace stillmap {
 
-/// Where a key frame that was dropped stood: fixed to one that stays.
+/// The pose of a dropped key frame, relative to a key frame that stays.
 struct Anchor {
   KeyframeId keyframe;
   Eigen::Isometry3d T_anchor_dropped = Eigen::Isometry3d::Identity();
 };
 
-/// What changed in a window of the map: the only way in which a worker's result reaches the owner.
+/// The changes in a window of the map: the only way in which a worker's result reaches the owner.
 struct MapUpdate {
-  std::vector<Keyframe> keyframes;  ///< with a new pose or other landmarks; by id
+  std::vector<Keyframe> keyframes;  ///< with a new pose or other landmarks, by id
   std::vector<std::pair<KeyframeId, Anchor>> dropped_keyframes;
-  std::vector<Landmark> landmarks;  ///< new or changed, by id; tracking's counts are not taken over
+  std::vector<Landmark> landmarks;  ///< new or changed, by id; the counts of tracking are ignored
   std::vector<LandmarkId> removed_landmarks;                        ///< by id
   std::vector<std::pair<LandmarkId, LandmarkId>> merged_landmarks;  ///< (gone, into), in order
   LandmarkId next_landmark;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr unsigned kBucketBits = 15;  // per table
 
-// `bits` bits from `first` on, over the words' borders.
+// `bits` bits from bit `first` on, across word boundaries.
 std::uint32_t bit_run(const Descriptor& d, unsigned first, unsigned bits) {
   const unsigned word = first / 64U, shift = first % 64U;
   std::uint64_t run = d[word] >> shift;
@@ -20,12 +20,12 @@ std::uint32_t bit_run(const Descriptor& d, unsigned first, unsigned bits) {
   return static_cast<std::uint32_t>(run & ((std::uint64_t{1} << bits) - 1U));
 }
 
-// Fibonacci hashing: neighbouring keys are spread over 2^bits places.
+// Fibonacci hashing: spreads neighbouring keys over 2^bits buckets.
 std::uint32_t hashed(std::uint32_t key, unsigned bits) {
   return (key * 2654435769U) >> (32U - bits);
 }
 
-// How many features of an image have a key.
+// Counts the features of an image with each key.
 class KeyCounts {
  public:
   explicit KeyCounts(std::size_t features)
@@ -45,7 +45,8 @@ class KeyCounts {
     std::uint32_t key = 0;
     int count = 0;
   };
-  // The key's cell, or the empty one where it belongs; at most a quarter is full.
+  // The cell of the key, or the empty cell where it belongs. At most a quarter of the cells is
+  // used.
   [[nodiscard]] std::size_t find(std::uint32_t key) const {
     std::size_t at = hashed(key, bits_);
     while (cells_[at].count > 0 && cells_[at].key != key) at = (at + 1) & (cells_.size() - 1);
@@ -126,8 +127,8 @@ void PlaceIndex::add(std::span<const NewPlace> places) {
   }
 }
 
-// One table after the other, for its buckets are near each other; and each bucket is made as large
-// as it becomes at once.
+// Table by table, since the buckets of a table are near each other; each bucket is allocated with
+// its final size at once.
 void PlaceIndex::add_to_table(std::size_t table,
                               std::span<const std::uint32_t> slots,
                               std::span<const Keys> keys) {
@@ -166,7 +167,7 @@ void PlaceIndex::remove(KeyframeId keyframe) {
   slots_.erase(found);
 }
 
-// Per slot, of those that are counted.
+// Per slot, of the key frames that count.
 STILLMAP_POPCOUNT_CLONES
 std::vector<double> PlaceIndex::votes(std::span<const Descriptor> descriptors,
                                       const std::vector<std::uint8_t>& counted) const {
@@ -174,11 +175,12 @@ std::vector<double> PlaceIndex::votes(std::span<const Descriptor> descriptors,
   const auto count = static_cast<std::size_t>(options_.keys);
   const Keys keys = keys_of(descriptors);
   std::vector<double> result(places_.size(), 0.0);
-  std::vector<std::size_t> voted(places_.size(), descriptors.size());  // by which feature last
+  std::vector<std::size_t> voted(places_.size(),
+                                 descriptors.size());  // the last feature that voted
   std::vector<std::uint32_t> found;
   std::vector<Entry> sharing;
   for (std::size_t i = 0; i < descriptors.size(); ++i) {
-    // First all entries, then their descriptors, so that the memory is asked for many at once.
+    // First all entries, then their descriptors, so that memory accesses overlap.
     sharing.clear();
     for (std::size_t table = 0; table < count; ++table) {
       if (keys.distinctive[i * count + table] == 0) continue;
@@ -219,7 +221,7 @@ std::vector<PlaceCandidate> PlaceIndex::query(std::span<const Descriptor> descri
     if (sums[slot] <= 0) continue;
     candidates.push_back({keyframe, sums[slot] / static_cast<double>(descriptors.size())});
   }
-  // Stable over the map's order: ties by id.
+  // Stable over the order of the map, so that ties are by id.
   std::ranges::stable_sort(candidates,
                            [](const auto& l, const auto& r) { return l.score > r.score; });
   if (candidates.size() > max_results) candidates.resize(max_results);

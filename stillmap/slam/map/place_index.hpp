@@ -12,12 +12,12 @@
 
 namespace stillmap {
 
-/// How descriptors are looked up. A key is a run of bits of the descriptor.
+/// Options of the lookup of descriptors. A key is a run of bits of the descriptor.
 struct PlaceOptions {
-  int keys = 8;           ///< of each descriptor, 1 to 256 / key_bits
+  int keys = 8;           ///< number of keys of a descriptor, 1 to 256 / key_bits
   int key_bits = 16;      ///< 8 to 32
-  int max_distance = 30;  ///< Hamming; farther descriptors are of different corners
-  int max_alike = 1;      ///< a key that more features of one image share is left out
+  int max_distance = 30;  ///< Hamming distance; farther descriptors are of different corners
+  int max_alike = 1;      ///< a key shared by more features of one image is left out
 };
 
 struct PlaceCandidate {
@@ -27,36 +27,37 @@ struct PlaceCandidate {
   [[nodiscard]] bool operator==(const PlaceCandidate&) const = default;
 };
 
-/// Finds the key frames that look like an image, from binary descriptors alone.
+/// Finds the key frames that look like an image, by binary descriptors alone.
 ///
 /// Each descriptor is stored under several keys (multi-index hashing, Norouzi et al., CVPR 2012): a
 /// descriptor of the same corner, with some bits flipped, still shares one of them. A feature of
-/// the image that finds its like in a key frame votes for it, with less weight the more key frames
-/// have it. Edges, which all look alike, share keys within one image and are left out. There is no
-/// vocabulary to train or to load; docs/place-recognition.md compares this with such.
+/// the image votes for each key frame with a similar descriptor, with a weight that falls with the
+/// number of such key frames. Features on edges, which all look alike, share keys within one image
+/// and are left out. There is no vocabulary to train or load; docs/place-recognition.md has a
+/// comparison.
 ///
-/// The answer depends on what is in the index alone, not on the order in which it came in. Queries
-/// change nothing.
+/// Results depend on the content of the index alone, not on the order of insertion. Queries change
+/// nothing.
 class PlaceIndex {
  public:
   explicit PlaceIndex(const PlaceOptions& options = {});
 
-  /// The key frame is not in the index. At most 65535 descriptors.
+  /// Adds a key frame that is not in the index, with at most 65535 descriptors.
   void add(KeyframeId keyframe, std::span<const Descriptor> descriptors);
-  /// The same for many at once, faster. None is in the index, and none is given twice.
+  /// Adds many key frames at once, which is faster. None may be in the index or be given twice.
   struct NewPlace {
     KeyframeId keyframe;
     std::span<const Descriptor> descriptors;
   };
   void add(std::span<const NewPlace> places);
-  /// Nothing happens when it is not in the index.
+  /// Removes a key frame. Does nothing if it is not in the index.
   void remove(KeyframeId keyframe);
   [[nodiscard]] bool has(KeyframeId keyframe) const { return slots_.contains(keyframe); }
   [[nodiscard]] std::size_t size() const { return slots_.size(); }
 
-  /// At most `max_results` key frames with something in common, best first, ties by id. Those in
-  /// `left_out` (in any order) do not count, as results or otherwise: the neighbours of the image,
-  /// which look like it without being a loop.
+  /// At most `max_results` key frames with similar features, best first, ties by id. Key frames in
+  /// `left_out` (in any order) are ignored: the neighbours of the image, which look like it but
+  /// form no loop.
   [[nodiscard]] std::vector<PlaceCandidate> query(std::span<const Descriptor> descriptors,
                                                   std::size_t max_results,
                                                   std::span<const KeyframeId> left_out = {}) const;
@@ -68,14 +69,14 @@ class PlaceIndex {
     std::uint32_t feature;
   };
   struct Place {
-    KeyframeId keyframe;  // invalid: free
+    KeyframeId keyframe;  // invalid for a free slot
     std::vector<Descriptor> descriptors;
   };
-  /// Keys of an image's features; all of feature 0, then of feature 1, ...
+  /// The keys of an image's features: those of feature 0, then of feature 1, ...
   struct Keys {
     std::vector<std::uint32_t> keys;
     std::vector<std::uint8_t>
-        distinctive;  // 0: more than max_alike of the image's features share it
+        distinctive;  // 0 if more than max_alike features of the image share the key
   };
 
   [[nodiscard]] std::uint32_t take_slot(const NewPlace& place);
@@ -94,7 +95,7 @@ class PlaceIndex {
   std::vector<std::uint32_t> free_slots_;
 };
 
-/// An index of all key frames of a map.
+/// The place index of all key frames of a map.
 [[nodiscard]] PlaceIndex index_of(const Map& map);
 
 }  // namespace stillmap

@@ -6,7 +6,7 @@
 namespace stillmap {
 namespace {
 
-// Other key frames that see the landmark on the same or a finer level.
+// The number of other key frames that observe the landmark on the same or a finer level.
 int fine_observers(const Map& map, const Landmark& landmark, KeyframeId keyframe, int level) {
   int count = 0;
   for (const Observation& observation : landmark.observations) {

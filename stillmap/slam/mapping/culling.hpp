@@ -18,32 +18,40 @@ struct CullingConfig {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("min_found_ratio",
-          self.min_found_ratio,
-          FieldInfo{"a young landmark found less often, of the times expected, goes", "", 0, 1});
+    visit(
+        "min_found_ratio",
+        self.min_found_ratio,
+        FieldInfo{"ratio of found to expected below which a young landmark is removed", "", 0, 1});
     visit("probation_keyframes",
           self.probation_keyframes,
-          FieldInfo{"for how many key frames a landmark counts as young", "", 0, 100});
-    visit("min_observations",
-          self.min_observations,
-          FieldInfo{
-              "key frames that must see a landmark two key frames after its making", "", 1, 10});
+          FieldInfo{"number of key frames during which a landmark is young", "", 0, 100});
     visit(
-        "redundant_ratio",
-        self.redundant_ratio,
-        FieldInfo{"share of a key frame's landmarks that others must see for it to go", "", 0, 1});
+        "min_observations",
+        self.min_observations,
+        FieldInfo{"number of observations that a landmark needs two key frames after its creation",
+                  "",
+                  1,
+                  10});
+    visit("redundant_ratio",
+          self.redundant_ratio,
+          FieldInfo{"share of redundant landmarks above which a key frame is removed", "", 0, 1});
     visit("redundant_observers",
           self.redundant_observers,
-          FieldInfo{"how many others must see each, as finely", "", 1, 20});
+          FieldInfo{"number of other key frames, at the same or a finer level, that make a "
+                    "landmark redundant",
+                    "",
+                    1,
+                    20});
   }
 };
 
-/// Removes young landmarks that tracking rarely finds or that too few key frames see.
-/// `newest` is the latest key frame. Returns how many went.
+/// Removes young landmarks that tracking rarely finds or that too few key frames observe. `newest`
+/// is the latest key frame. Returns the number removed.
 int cull_young_landmarks(Map& map, KeyframeId newest, const CullingConfig& config);
 
-/// Drops those of `candidates` whose landmarks nearly all are seen, on the same or a finer level,
-/// by enough other key frames. Never the first key frame or `newest`. Returns how many went.
+/// Drops the key frames of `candidates` of whose landmarks nearly all are observed, on the same or
+/// a finer level, by enough other key frames. Never drops an origin or `newest`. Returns the number
+/// dropped.
 int cull_redundant_keyframes(Map& map,
                              std::span<const KeyframeId> candidates,
                              KeyframeId newest,

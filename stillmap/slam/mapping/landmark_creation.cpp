@@ -6,20 +6,15 @@
 #include <numbers>
 #include <optional>
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
-
 #include "stillmap/slam/map/covisibility.hpp"
 #include "stillmap/slam/optim/reprojection.hpp"
 
 namespace stillmap {
 namespace {
 
-constexpr int kMaxDistance = 50;
-
 struct Ray {
   Eigen::Vector3d origin;
-  Eigen::Vector3d direction;  // unit, in the world
+  Eigen::Vector3d direction;  // unit, in the world frame
 };
 
 Ray feature_ray(const CameraModel& camera, const Keyframe& keyframe, std::uint32_t feature) {
@@ -28,7 +23,7 @@ Ray feature_ray(const CameraModel& camera, const Keyframe& keyframe, std::uint32
           (keyframe.T_world_camera.linear() * camera.unproject(px, 1.0)).normalized()};
 }
 
-// The point midway between two rays; nothing where they do not meet before both cameras.
+// The point midway between two rays; nothing unless it is in front of both cameras.
 std::optional<Eigen::Vector3d> intersect(const Ray& a, const Ray& b) {
   const Eigen::Vector3d offset = b.origin - a.origin;
   const double c = a.direction.dot(b.direction);
@@ -49,7 +44,7 @@ bool agrees(const CameraModel& camera,
   return agrees_with(camera, measure(*keyframe.features, feature), p_camera);
 }
 
-// Fundamental matrix: p_b^T F p_a = 0 for ideal pixels of the two views.
+// The fundamental matrix: p_b^T F p_a = 0 for ideal pixels of the two views.
 Eigen::Matrix3d fundamental(const CameraModel& camera, const Keyframe& a, const Keyframe& b) {
   const Eigen::Isometry3d T_b_a = b.T_world_camera.inverse() * a.T_world_camera;
   Eigen::Matrix3d K_inverse;
@@ -58,7 +53,7 @@ Eigen::Matrix3d fundamental(const CameraModel& camera, const Keyframe& a, const 
   return K_inverse.transpose() * skew(T_b_a.translation()) * T_b_a.linear() * K_inverse;
 }
 
-// Features of a key frame that see no landmark.
+// The features of a key frame that observe no landmark.
 std::vector<std::uint32_t> free_features(const Keyframe& keyframe) {
   std::vector<std::uint32_t> free;
   for (std::uint32_t i = 0; i < keyframe.landmarks.size(); ++i) {
@@ -67,45 +62,46 @@ std::vector<std::uint32_t> free_features(const Keyframe& keyframe) {
   return free;
 }
 
-// The free feature of `b` that looks most like feature `i` of `a` and lies on its epipolar line.
+// The free feature of `b` most similar to feature `i` of `a` near its epipolar line.
 STILLMAP_POPCOUNT_CLONES
 std::optional<std::uint32_t> match_on_line(const Eigen::Vector3d& line,
                                            const Descriptor& descriptor,
                                            const Features& b,
                                            std::span<const std::uint32_t> free_b,
-                                           const std::vector<float>& level_scales) {
+                                           const std::vector<float>& level_scales,
+                                           const LandmarkCreationConfig& config) {
   const double norm = std::hypot(line.x(), line.y());
-  int best = kMaxDistance + 1;
+  int best = config.max_distance + 1;
   std::optional<std::uint32_t> match;
   for (const std::uint32_t j : free_b) {
     const int distance = hamming_distance(descriptor, b.descriptors[j]);
     if (distance >= best) continue;
     const Eigen::Vector2d px = b.px[j].cast<double>();
     const double off = std::abs(line.x() * px.x() + line.y() * px.y() + line.z()) / norm;
-    if (off > 2.0 * static_cast<double>(level_scales[b.level[j]])) continue;
+    if (off > config.max_line_px * static_cast<double>(level_scales[b.level[j]])) continue;
     best = distance;
     match = j;
   }
   return match;
 }
 
-// Triangulates what two key frames see in common; returns how many landmarks that gave.
+// Triangulates the points that two key frames have in common. Returns the number of new landmarks.
 int triangulate_pair(Map& map,
                      KeyframeId a_id,
                      KeyframeId b_id,
                      const CameraModel& camera,
                      const MeasurementModel& measure,
-                     double min_parallax_deg) {
+                     const LandmarkCreationConfig& config) {
   const Keyframe& a = map.keyframe(a_id);
   const Keyframe& b = map.keyframe(b_id);
   const Eigen::Matrix3d F = fundamental(camera, a, b);
-  const double max_cosine = std::cos(min_parallax_deg * std::numbers::pi / 180.0);
+  const double max_cosine = std::cos(config.min_parallax_deg * std::numbers::pi / 180.0);
   const std::vector<std::uint32_t> free_b = free_features(b);
   int made = 0;
   for (const std::uint32_t i : free_features(a)) {
     const Eigen::Vector3d line = F * a.features->px[i].cast<double>().homogeneous();
     const std::optional<std::uint32_t> j = match_on_line(
-        line, a.features->descriptors[i], *b.features, free_b, measure.level_scales());
+        line, a.features->descriptors[i], *b.features, free_b, measure.level_scales(), config);
     if (!j || b.landmarks[*j].valid()) continue;
     const Ray ray_a = feature_ray(camera, a, i), ray_b = feature_ray(camera, b, *j);
     if (ray_a.direction.dot(ray_b.direction) > max_cosine) continue;
@@ -154,7 +150,7 @@ int triangulate_landmarks(Map& map,
   int made = 0, tried = 0;
   for (const CovisibleKeyframe& neighbor : covisible_keyframes(map, keyframe)) {
     if (tried++ >= config.neighbors) break;
-    made += triangulate_pair(map, keyframe, neighbor.id, camera, measure, config.min_parallax_deg);
+    made += triangulate_pair(map, keyframe, neighbor.id, camera, measure, config);
   }
   return made;
 }

@@ -6,6 +6,7 @@
 #include "stillmap/slam/map/map.hpp"
 #include "stillmap/slam/mapping/culling.hpp"
 #include "stillmap/slam/mapping/landmark_creation.hpp"
+#include "stillmap/slam/mapping/landmark_fusion.hpp"
 #include "stillmap/slam/optim/bundle_adjuster.hpp"
 #include "stillmap/slam/optim/measurement_model.hpp"
 
@@ -14,42 +15,41 @@ namespace stillmap {
 struct MappingConfig {
   int lag_frames = 6;
   int window_keyframes = 20;
-  double fusion_radius_px = 6;
+  LandmarkFusionConfig fusion;
   LandmarkCreationConfig creation;
   CullingConfig culling;
   BundleConfig bundle;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("lag_frames",
-          self.lag_frames,
-          FieldInfo{"a key frame's mapping reaches the map that many frames after it; at most "
-                    "keyframe.min_gap_frames",
-                    "frames",
-                    0,
-                    1000});
+    visit(
+        "lag_frames",
+        self.lag_frames,
+        common_setting(FieldInfo{
+            "number of frames after which a map update is applied; at most keyframe.min_gap_frames",
+            "frames",
+            0,
+            1000}));
     visit("window_keyframes",
           self.window_keyframes,
-          FieldInfo{"key frames that local bundle adjustment moves", "", 2, 200});
-    visit("fusion_radius_px",
-          self.fusion_radius_px,
-          FieldInfo{
-              "search for a landmark in another key frame, on the finest level", "px", 0.5, 50});
+          common_setting(
+              FieldInfo{"number of key frames that local bundle adjustment moves", "", 2, 200}));
+    LandmarkFusionConfig::fields(self.fusion, visit);
     visit.group("creation", self.creation);
     visit.group("culling", self.culling);
     visit.group("bundle", self.bundle);
   }
 };
 
-/// The key frames whose surroundings a new key frame changes: itself and those that share most
-/// landmarks with it. The new one is first.
+/// The core of the window of a new key frame: itself, first, and the key frames that share most
+/// landmarks with it.
 [[nodiscard]] std::vector<KeyframeId> mapping_core(const Map& map,
                                                    KeyframeId newest,
                                                    const MappingConfig& config);
 
-/// What a new key frame means for the map round it: landmarks are culled, triangulated and fused
-/// with those of its neighbours, poses and points adjusted, redundant key frames dropped. `window`
-/// is map.window(core); the job shares nothing with its owner and may run on any thread.
+/// Local mapping around a new key frame: culls, triangulates and fuses landmarks with those of its
+/// neighbours, adjusts poses and points, and drops redundant key frames. `window` is
+/// map.window(core). The job shares nothing with the owner of the map and may run on any thread.
 [[nodiscard]] MapUpdate map_locally(Map window,
                                     const std::vector<KeyframeId>& core,
                                     const CameraModel& camera,

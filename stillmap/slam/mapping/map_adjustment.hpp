@@ -10,9 +10,9 @@
 
 namespace stillmap {
 
-/// Bundle adjustment of a map: the poses of `free_keyframes` and every landmark that one of them
-/// sees move; all other key frames are held, and so are origins. Observations that
-/// end outside the 95 % bound are removed.
+/// Bundle adjustment of a map. Moves the poses of `free_keyframes` and every landmark that one of
+/// them observes; all other key frames, and origins, are held. Removes the observations that end
+/// outside the 95 % bound.
 void adjust_map(Map& map,
                 std::span<const KeyframeId> free_keyframes,
                 const CameraModel& camera,

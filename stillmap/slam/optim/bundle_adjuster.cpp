@@ -15,17 +15,18 @@ using Matrix63d = Eigen::Matrix<double, 6, 3>;
 
 constexpr std::uint32_t kHeld = ~std::uint32_t{0};
 constexpr double kConverged = 1e-5;  // relative decrease of the cost
-// Squared error, in sigmas, of a point that a step has put behind a camera, where none is defined:
-// that of a gross outlier. A step that does so to one of ten thousand points may still be good.
+// Squared error, in sigmas, of a point that a step moved behind a camera, where the error is
+// undefined: that of a gross outlier. A step that does this to one of ten thousand points may still
+// be good.
 constexpr double kBehind = 1e4;
 constexpr double kMaxDamping = 1e8;
 
-// Where a free camera's six numbers begin in the reduced system.
+// The position of a free camera's six parameters in the reduced system.
 Eigen::Index offset_of(std::uint32_t slot) {
   return 6 * static_cast<Eigen::Index>(slot);
 }
 
-/// One solve: the current estimate, its linearisation, and steps from it.
+/// The state of one adjustment: the current estimate, its linearisation, and steps from it.
 class Solver {
  public:
   Solver(BundleProblem problem, std::vector<std::uint8_t> used)
@@ -41,7 +42,7 @@ class Solver {
     W_.resize(problem_.observations.size());
   }
 
-  /// Runs up to `iterations` accepted or refused steps; returns how many.
+  /// Runs up to `iterations` accepted or rejected steps and returns their number.
   int minimize(int iterations);
 
   [[nodiscard]] double cost() const { return cost_of(problem_.T_camera_world, problem_.points); }
@@ -67,7 +68,7 @@ class Solver {
 
   BundleProblem problem_;
   std::vector<std::uint8_t> used_;   // per observation
-  std::vector<std::uint32_t> slot_;  // of each camera among the free ones
+  std::vector<std::uint32_t> slot_;  // position of each camera among the free cameras
   std::uint32_t free_cameras_ = 0;
 
   std::vector<Matrix6d> H_camera_;  // lower triangles
@@ -123,7 +124,8 @@ void Solver::linearize() {
     const Eigen::Vector3d r = reprojection_residual(problem_.camera, o.measurement, p_camera);
     const double weight = Huber(r.squaredNorm(), chi2_bound(o.measurement)).weight;
     const PointEquations eq = point_equations(problem_.camera, o.measurement, p_camera, r, weight);
-    const Eigen::Matrix3d H_mixed = eq.H * T.linear();  // camera's axes by the world's
+    // rows in camera axes, columns in world axes
+    const Eigen::Matrix3d H_mixed = eq.H * T.linear();
     H_point_[o.point].noalias() += T.linear().transpose() * H_mixed;
     g_point_[o.point].noalias() += T.linear().transpose() * eq.g;
     const std::uint32_t slot = slot_[o.camera];
@@ -134,7 +136,7 @@ void Solver::linearize() {
   }
 }
 
-// S and b become the normal equations of the cameras alone.
+// Reduces S and b to the normal equations of the cameras (Schur complement).
 void Solver::eliminate_points(double damping,
                               Eigen::MatrixXd& S,
                               Eigen::VectorXd& b,
@@ -143,7 +145,7 @@ void Solver::eliminate_points(double damping,
     std::uint32_t slot;
     std::size_t observation;
   };
-  std::vector<Term> terms;  // the free cameras that see the point
+  std::vector<Term> terms;  // the free cameras that observe the point
   const std::size_t count = problem_.observations.size();
   for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
     const std::uint32_t point = problem_.observations[begin].point;
@@ -160,7 +162,7 @@ void Solver::eliminate_points(double damping,
       const Matrix63d Y = W_[row.observation] * H_point_inverse[point];
       b.segment<6>(offset_of(row.slot)).noalias() += Y * g_point_[point];
       for (const Term& column : terms) {
-        if (column.slot > row.slot) continue;  // the lower triangle is enough
+        if (column.slot > row.slot) continue;  // only the lower triangle is needed
         S.block<6, 6>(offset_of(row.slot), offset_of(column.slot)).noalias() -=
             Y * W_[column.observation].transpose();
       }
@@ -213,7 +215,7 @@ int Solver::minimize(int iterations) {
     std::vector<Eigen::Vector3d> points = problem_.points;
     for (std::size_t p = 0; p < points.size(); ++p) points[p] += step.points[p];
     const double new_cost = cost_of(poses, points);
-    if (!(new_cost < cost)) {  // also when not a number
+    if (!(new_cost < cost)) {  // also for NaN
       damping *= 10;
       continue;
     }
@@ -228,8 +230,8 @@ int Solver::minimize(int iterations) {
   return iteration;
 }
 
-// Observations of points that are behind their camera from the beginning, where the residual is
-// undefined, and of what is no number never take part.
+// Observations of points that start behind their camera, where the residual is undefined, and NaN
+// observations never take part.
 std::vector<std::uint8_t> usable(const BundleProblem& problem) {
   std::vector<std::uint8_t> used(problem.observations.size());
   for (std::size_t i = 0; i < used.size(); ++i) {
@@ -253,7 +255,7 @@ BundleResult adjust_bundle(BundleProblem problem, const BundleConfig& config) {
   solver.use(solver.inliers());
   result.iterations += solver.minimize(config.final_iterations);
   result.inlier = solver.inliers();
-  solver.use(usable(solver.problem()));  // an outlier may have ended behind its camera
+  solver.use(usable(solver.problem()));  // an outlier may have moved behind its camera
   result.final_cost = solver.cost();
   BundleProblem solved = solver.take_problem();
   result.T_camera_world = std::move(solved.T_camera_world);

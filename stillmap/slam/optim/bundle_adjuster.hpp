@@ -17,10 +17,10 @@ struct BundleConfig {
   static void fields(Self& self, Visitor& visit) {
     visit("robust_iterations",
           self.robust_iterations,
-          FieldInfo{"iterations with outliers in, before they are set aside", "", 0, 100});
+          FieldInfo{"number of iterations with outliers, under a robust loss", "", 0, 100});
     visit("final_iterations",
           self.final_iterations,
-          FieldInfo{"iterations over the inliers", "", 0, 100});
+          FieldInfo{"number of iterations without outliers", "", 0, 100});
   }
 };
 
@@ -30,8 +30,8 @@ struct BundleObservation {
   PointMeasurement measurement;
 };
 
-/// What is known before: camera poses, of which some are held, points, and who sees what.
-/// Observations are grouped by point (all of point 0, then of point 1, ...).
+/// The input: camera poses, some of which are held, points, and observations. Observations are
+/// grouped by point (all of point 0, then of point 1, ...).
 struct BundleProblem {
   CameraModel camera;
   std::vector<Eigen::Isometry3d> T_camera_world;
@@ -44,16 +44,15 @@ struct BundleResult {
   std::vector<Eigen::Isometry3d> T_camera_world;
   std::vector<Eigen::Vector3d> points;
   std::vector<std::uint8_t> inlier;  ///< per observation: within the 95 % bound at the end
-  double initial_cost = 0;           ///< Huber's loss of all points before their cameras
-  double final_cost = 0;             ///< the same at the end
+  double initial_cost = 0;           ///< Huber loss of all points in front of their cameras, before
+  double final_cost = 0;             ///< Huber loss of the same points, after
   int iterations = 0;
 };
 
-/// Bundle adjustment: minimises Huber's loss of all reprojection errors over the poses that are not
-/// held and over all points, by Levenberg-Marquardt on the Schur complement (dense over the
-/// cameras, which suits windows of up to some 50). First with all observations, then with those
-/// inside the 95 % bound. Single-threaded, with no time limits, so that equal input gives equal
-/// bits.
+/// Bundle adjustment: minimises the Huber loss of all reprojection errors over the free poses and
+/// all points, by Levenberg-Marquardt on the Schur complement, which is dense over the cameras and
+/// suits windows of up to about 50. First with all observations, then with those inside the 95 %
+/// bound. Single-threaded and without time limits, so that equal input gives equal bits.
 [[nodiscard]] BundleResult adjust_bundle(BundleProblem problem, const BundleConfig& config);
 
 }  // namespace stillmap

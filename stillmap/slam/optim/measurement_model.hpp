@@ -18,20 +18,24 @@ struct MeasurementConfig {
   static void fields(Self& self, Visitor& visit) {
     visit("pixel_sigma_px",
           self.pixel_sigma_px,
-          FieldInfo{"error of a feature's position on the finest pyramid level", "px", 0.01, 100});
+          FieldInfo{"standard deviation of a feature's position at the finest pyramid level",
+                    "px",
+                    0.01,
+                    100});
     visit("inverse_depth_sigma",
           self.inverse_depth_sigma,
-          FieldInfo{"error of the inverse depth; the depth's error is this times its square",
+          FieldInfo{"standard deviation of the inverse depth; that of the depth is this times "
+                    "depth squared",
                     "1/m",
                     1e-5,
                     10});
     visit("max_depth_m",
           self.max_depth_m,
-          FieldInfo{"depth beyond this is not used for poses", "m", 0.1, 1000});
+          common_setting(FieldInfo{"greatest depth used for poses", "m", 0.1, 1000}));
   }
 };
 
-/// What a feature measures, and how well.
+/// The measurement of a feature with its standard deviations.
 class MeasurementModel {
  public:
   MeasurementModel(const MeasurementConfig& config, std::vector<float> level_scales)
@@ -41,7 +45,7 @@ class MeasurementModel {
     return features.depth_m[i] > 0 && features.depth_m[i] <= config_.max_depth_m;
   }
 
-  /// A corner of a coarser level is known that much less well.
+  /// The standard deviation of a pixel position is proportional to the pixel size of the level.
   [[nodiscard]] PointMeasurement operator()(const Features& features, std::size_t i) const {
     PointMeasurement m;
     m.px = features.px[i].cast<double>();

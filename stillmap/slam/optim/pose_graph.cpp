@@ -12,7 +12,7 @@
 namespace stillmap {
 namespace {
 
-// Ceres would report these on stderr and carry on without a result.
+// Ceres would report these on stderr and continue without a result.
 void check(const PoseGraph& graph) {
   STILLMAP_CHECK(graph.held.size() == graph.T_world.size());
   const bool poses_finite = std::ranges::all_of(
@@ -57,7 +57,7 @@ bool solve(const PoseGraph& graph, const PoseGraphConfig& config, std::vector<Po
     if (graph.held[i] != 0) problem.SetParameterBlockConstant(poses[i].data());
   }
   ceres::Solver::Options options;
-  // SuiteSparse would call a BLAS that may use threads; Eigen gives the same bits everywhere.
+  // SuiteSparse would call a BLAS that may use threads. Eigen gives the same bits everywhere.
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
   options.num_threads = 1;
@@ -81,7 +81,7 @@ PoseGraphResult optimize_pose_graph(const PoseGraph& graph, const PoseGraphConfi
   result.converged = solve(graph, config, poses);
   result.final_cost = total(graph.edges, poses);
   for (const PoseGraphEdge& edge : graph.edges) result.chi2.push_back(chi2_of(edge, poses));
-  // What did not move keeps its bits.
+  // Poses that did not move keep their bits.
   for (std::size_t i = 0; i < poses.size(); ++i) {
     result.T_world.push_back(poses[i] == pose_block(graph.T_world[i]) ? graph.T_world[i]
                                                                       : pose_of(poses[i]));

@@ -10,7 +10,7 @@
 
 namespace stillmap {
 
-/// How two poses stand to each other, and how well that is known.
+/// A measured relative pose with its standard deviations.
 struct PoseGraphEdge {
   std::uint32_t from = 0;  ///< index of a pose
   std::uint32_t to = 0;
@@ -20,8 +20,8 @@ struct PoseGraphEdge {
 };
 
 struct PoseGraph {
-  std::vector<Eigen::Isometry3d> T_world;  ///< before
-  std::vector<std::uint8_t> held;          ///< per pose; at least one of what hangs together
+  std::vector<Eigen::Isometry3d> T_world;  ///< initial poses
+  std::vector<std::uint8_t> held;          ///< per pose; at least one in each connected component
   std::vector<PoseGraphEdge> edges;
 };
 
@@ -32,21 +32,21 @@ struct PoseGraphConfig {
   static void fields(Self& self, Visitor& visit) {
     visit("iterations",
           self.iterations,
-          FieldInfo{"of the adjustment of all key frames to a loop, at most", "", 1, 1000});
+          FieldInfo{"greatest number of iterations of the pose graph", "", 1, 1000});
   }
 };
 
 struct PoseGraphResult {
   std::vector<Eigen::Isometry3d> T_world;
   std::vector<double> chi2;  ///< per edge: squared error in sigmas, 6 degrees of freedom
-  double initial_cost = 0;   ///< sum of chi2 before
-  double final_cost = 0;     ///< and after; never more
-  bool converged = false;    ///< before the iterations ran out
+  double initial_cost = 0;   ///< sum of chi2 before optimisation
+  double final_cost = 0;     ///< sum of chi2 after optimisation; never more
+  bool converged = false;    ///< within the number of iterations
 };
 
 /// The poses that fit all edges best: least squares over SE(3) by Levenberg-Marquardt (Ceres), on
-/// one thread and without time limits, so that equal input gives equal bits. Poses that no chain of
-/// edges ties to a held one stay as they are where no edge pulls at them. Throws Error when a
+/// one thread and without time limits, so that equal input gives equal bits. A connected
+/// component without a held pose stays unchanged if its edges already fit. Throws Error when a
 /// number in the graph is not finite.
 [[nodiscard]] PoseGraphResult optimize_pose_graph(const PoseGraph& graph,
                                                   const PoseGraphConfig& config);

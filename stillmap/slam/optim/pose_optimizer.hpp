@@ -20,11 +20,12 @@ struct PoseEstimate {
   int inliers = 0;
 };
 
-/// The camera's pose against fixed points: minimises Huber's loss of the reprojection errors
-/// (pixels and inverse depth) by Levenberg-Marquardt, in four rounds; after each the observations
-/// beyond the 95 % bound are set aside and the others readmitted, and the last rounds are plain
-/// least squares over the inliers. Observations behind the camera are outliers. With fewer than
-/// three observations before the camera the pose is returned as given, with no inliers.
+/// Estimates the camera's pose from fixed points: minimises the Huber loss of the reprojection
+/// errors (pixels and inverse depth) by Levenberg-Marquardt in four rounds. After each round the
+/// observations beyond the 95 % bound are set aside and the others readmitted; the last rounds are
+/// plain least squares over the inliers. Observations of points behind the camera are outliers.
+/// With fewer than three points in front of the camera the pose is returned unchanged, without
+/// inliers.
 [[nodiscard]] PoseEstimate optimize_pose(const CameraModel& camera,
                                          const Eigen::Isometry3d& T_camera_world,
                                          std::span<const PoseObservation> observations);

@@ -9,7 +9,7 @@
 
 namespace stillmap {
 
-/// A pose as Ceres has it: quaternion (x, y, z, w), then translation.
+/// A pose as parameters of Ceres: quaternion (x, y, z, w), then translation.
 using PoseBlock = std::array<double, 7>;
 
 [[nodiscard]] inline PoseBlock pose_block(const Eigen::Isometry3d& T) {
@@ -25,8 +25,8 @@ using PoseBlock = std::array<double, 7>;
   return T;
 }
 
-/// Error of an edge: E = T_from_to^-1 T_from^-1 T_to; its translation and twice the vector part of
-/// its quaternion (the rotation vector, for the small angles that are left), in sigmas.
+/// The error of an edge, in sigmas: the translation of E = T_from_to^-1 T_from^-1 T_to and twice
+/// the vector part of its quaternion, which is the rotation vector for small angles.
 class PoseResidual {
  public:
   explicit PoseResidual(const PoseGraphEdge& edge)
@@ -44,7 +44,7 @@ class PoseResidual {
     const Quaternion q_measured = q_to_from_.template cast<T>();
     const Quaternion q_error = q_measured * (q_from.conjugate() * q_to);
     const Vector between = q_from.conjugate() * (t_to - t_from);
-    // q and -q are one rotation: the shorter way round.
+    // q and -q are one rotation; takes the smaller angle.
     const T sign = q_error.w() < T(0) ? T(-1) : T(1);
     Eigen::Map<Eigen::Matrix<T, 6, 1>> errors(residual);
     errors.template head<3>() =

@@ -11,12 +11,12 @@
 
 namespace stillmap {
 
-/// A feature as a measurement of a point: its ideal pixel and, where known, the inverse of its
-/// depth.
+/// A feature as a measurement of a point: its ideal pixel and, if known, its inverse depth.
 ///
-/// The inverse depth is what a structured-light or stereo camera really measures (a disparity), so
-/// its sigma does not depend on the distance: sigma(z) = sigma_inverse_depth * z^2. It takes the
-/// place of the "virtual right coordinate" of ORB-SLAM2 without need of a made-up baseline.
+/// A structured-light or stereo camera measures a disparity, which is proportional to the inverse
+/// depth. The sigma of the inverse depth is therefore independent of distance: sigma(z) =
+/// sigma_inverse_depth * z^2. The inverse depth replaces the "virtual right coordinate" of
+/// ORB-SLAM2 without an invented baseline.
 struct PointMeasurement {
   Eigen::Vector2d px = Eigen::Vector2d::Zero();
   double inverse_depth = 0;         ///< 1/m; 0 = unknown
@@ -35,7 +35,7 @@ inline constexpr double kChi2Bound3 = 7.815;
 }
 
 /// Predicted minus measured (u, v, 1/z), each divided by its sigma; the third is 0 without depth.
-/// `p_camera.z()` is positive.
+/// `p_camera.z()` must be positive.
 [[nodiscard]] inline Eigen::Vector3d reprojection_residual(const CameraModel& camera,
                                                            const PointMeasurement& m,
                                                            const Eigen::Vector3d& p_camera) {
@@ -45,7 +45,7 @@ inline constexpr double kChi2Bound3 = 7.815;
           (iz - m.inverse_depth) * m.inverse_depth_weight};
 }
 
-/// Derivative of the residual by the point in camera coordinates.
+/// The derivative of the residual with respect to the point in camera coordinates.
 [[nodiscard]] inline Eigen::Matrix3d reprojection_jacobian(const CameraModel& camera,
                                                            const PointMeasurement& m,
                                                            const Eigen::Vector3d& p_camera) {
@@ -58,8 +58,8 @@ inline constexpr double kChi2Bound3 = 7.815;
   return J;
 }
 
-/// Derivative of the residual by a step of the pose (perturb_left on T_camera_world), given that by
-/// the point in camera coordinates.
+/// The derivative of the residual with respect to a step of the pose (perturb_left on
+/// T_camera_world), from that with respect to the point in camera coordinates.
 [[nodiscard]] inline Eigen::Matrix<double, 3, 6> pose_jacobian(const Eigen::Matrix3d& J_point,
                                                                const Eigen::Vector3d& p_camera) {
   Eigen::Matrix<double, 3, 6> J;
@@ -68,7 +68,8 @@ inline constexpr double kChi2Bound3 = 7.815;
   return J;
 }
 
-/// Normal equations of one measurement, J^T w J and J^T w r, by the point in camera coordinates.
+/// The normal equations of one measurement, J^T w J and J^T w r, for the point in camera
+/// coordinates.
 struct PointEquations {
   Eigen::Matrix3d H;
   Eigen::Vector3d g;
@@ -91,7 +92,7 @@ struct PointEquations {
   return eq;
 }
 
-/// [p]x M: the cross product with each column, without the zeros that the matrix of it has.
+/// [p]x M: the cross product of p with each column, without the zeros of the matrix [p]x.
 [[nodiscard]] inline Eigen::Matrix3d cross_columns(const Eigen::Vector3d& p,
                                                    const Eigen::Matrix3d& M) {
   Eigen::Matrix3d result;
@@ -101,8 +102,8 @@ struct PointEquations {
   return result;
 }
 
-/// Adds them to the equations of the pose, of which `H` gets the lower triangle: with
-/// J_pose = J [I | -[p]x], what is by the pose follows from what is by the point, in a third of the
+/// Adds the normal equations to those of the pose; `H` gets the lower triangle. With J_pose = J [I
+/// | -[p]x] the equations of the pose follow from those of the point in a third of the
 /// multiplications.
 inline void add_to_pose(const PointEquations& eq,
                         const Eigen::Vector3d& p_camera,
@@ -116,7 +117,7 @@ inline void add_to_pose(const PointEquations& eq,
   g.tail<3>() += p_camera.cross(eq.g);
 }
 
-/// Huber's loss of a squared norm, and the weight that makes least squares follow it.
+/// The Huber loss of a squared norm, and its weight for iteratively reweighted least squares.
 struct Huber {
   double cost;
   double weight = 1;
@@ -129,10 +130,10 @@ struct Huber {
   }
 };
 
-/// Nearer points cannot be seen; the residual is undefined at zero depth.
+/// The least depth of a visible point. The residual is undefined at zero depth.
 inline constexpr double kMinPointDepth = 0.05;
 
-/// The point is before the camera and its residual within the 95 % bound.
+/// Whether the point is in front of the camera and its residual within the 95 % bound.
 [[nodiscard]] inline bool agrees_with(const CameraModel& camera,
                                       const PointMeasurement& m,
                                       const Eigen::Vector3d& p_camera) {

@@ -20,7 +20,7 @@ bool same_shape(const PointTriple& a, const PointTriple& b) {
 bool near_measurement(const CameraModel& camera,
                       const PointMeasurement& measurement,
                       const Eigen::Vector3d& p_camera) {
-  constexpr double kSlack = 4.0;  // of squares
+  constexpr double kSlack = 4.0;  // factor on the squared error
   return p_camera.z() >= kMinPointDepth &&
          reprojection_residual(camera, measurement, p_camera).squaredNorm() <=
              kSlack * chi2_bound(measurement);

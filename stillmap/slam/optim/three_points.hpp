@@ -7,16 +7,16 @@
 
 namespace stillmap {
 
-/// Points from which a rigid motion follows, in the frame of one camera.
+/// Three points that determine a rigid motion, in the coordinates of one camera.
 using PointTriple = std::array<Eigen::Vector3d, 3>;
 
-/// Whether a rigid motion may lead from one to the other, as it keeps distances: as well as a depth
-/// sensor can tell, whose errors grow with depth squared. Never for points less than 0.1 m apart,
-/// which tell no rotation.
+/// Whether a rigid motion may take one triple to the other: whether distances are equal within the
+/// errors of a depth sensor, which grow with depth squared. False for points less than 0.1 m apart,
+/// which do not determine a rotation.
 [[nodiscard]] bool same_shape(const PointTriple& a, const PointTriple& b);
 
-/// Whether a point falls where it was measured, within twice the error that is allowed for a true
-/// one: for poses of three points, which have errors of their own.
+/// Whether a point agrees with its measurement, within twice the error bound of an inlier. The pose
+/// of three points has an error of its own.
 [[nodiscard]] bool near_measurement(const CameraModel& camera,
                                     const PointMeasurement& measurement,
                                     const Eigen::Vector3d& p_camera);

@@ -4,7 +4,7 @@
 namespace stillmap {
 namespace {
 
-/// Of the landmarks that a frame has found, those that enough key frames see.
+/// The share of well known landmarks among those that the frame matched.
 double known_share(const TrackedFrame& frame, const Map& map, int observers) {
   int found = 0, known = 0;
   for (const LandmarkId id : frame.landmarks) {
@@ -23,7 +23,7 @@ bool wants_keyframe(const KeyframePolicyConfig& config,
                     const KeyframeAge& since_keyframe,
                     const Map& map) {
   if (!has_pose(frame) || since_keyframe.frames < config.min_gap_frames) return false;
-  // What moves in it was judged without knowing where the camera is.
+  // The motion in a relocalised frame was judged without a predicted pose.
   if (frame.status == TrackingStatus::kRelocalized) return false;
   const auto finds_fewer = [&](double ratio) {
     return frame.inliers < ratio * since_keyframe.most_inliers;

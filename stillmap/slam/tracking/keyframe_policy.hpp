@@ -22,48 +22,64 @@ struct KeyframePolicyConfig {
   static void fields(Self& self, Visitor& visit) {
     visit("min_gap_frames",
           self.min_gap_frames,
-          FieldInfo{"frames from a key frame to the next, at least", "frames", 1, 1000});
-    visit("max_gap_frames", self.max_gap_frames, FieldInfo{"at most", "frames", 1, 100000});
+          common_setting(FieldInfo{
+              "least number of frames from one key frame to the next", "frames", 1, 1000}));
+    visit("max_gap_frames",
+          self.max_gap_frames,
+          common_setting(FieldInfo{
+              "greatest number of frames from one key frame to the next, outside known places",
+              "frames",
+              1,
+              100000}));
+    visit("min_tracked_ratio",
+          self.min_tracked_ratio,
+          FieldInfo{"share of the most landmarks tracked since the last key frame below which a "
+                    "key frame is due",
+                    "",
+                    0,
+                    1});
     visit(
-        "min_tracked_ratio",
-        self.min_tracked_ratio,
+        "min_near_tracked",
+        self.min_near_tracked,
         FieldInfo{
-            "a frame that finds fewer landmarks than this share of the most since the last becomes "
-            "one",
+            "number of near landmarks below which a key frame is due if min_near_untracked is met",
             "",
             0,
-            1});
-    visit("min_near_tracked",
-          self.min_near_tracked,
-          FieldInfo{"so does one with fewer near landmarks", "", 0, 10000});
+            10000});
     visit("min_near_untracked",
           self.min_near_untracked,
-          FieldInfo{"and as many near features that could become landmarks", "", 0, 10000});
-    visit("near_depth_m", self.near_depth_m, FieldInfo{"what counts as near", "m", 0.1, 100});
+          FieldInfo{
+              "number of near features without landmark that make a lack of near landmarks count",
+              "",
+              0,
+              10000});
+    visit("near_depth_m",
+          self.near_depth_m,
+          FieldInfo{"greatest depth of a near landmark or feature", "m", 0.1, 100});
     visit("known_observers",
           self.known_observers,
-          FieldInfo{"a landmark is well known when so many key frames see it", "", 1, 1000});
+          FieldInfo{"number of observations that make a landmark well known", "", 1, 1000});
     visit("max_known_share",
           self.max_known_share,
-          FieldInfo{"a place is known where more than this share of a frame's landmarks is: no key "
-                    "frame is due there for the longest gap, or for min_tracked_ratio; 1: none is",
+          FieldInfo{"share of well known landmarks above which a place is known and "
+                    "min_known_tracked_ratio applies",
                     "",
                     0,
                     1});
     visit("min_known_tracked_ratio",
           self.min_known_tracked_ratio,
-          FieldInfo{"but for this share instead of that", "", 0, 1});
+          FieldInfo{
+              "min_tracked_ratio at known places, where max_gap_frames does not apply", "", 0, 1});
   }
 };
 
-/// What has happened since the last key frame.
+/// The frames since the last key frame.
 struct KeyframeAge {
-  int frames = 0;        ///< processed since then
-  int most_inliers = 0;  ///< in any of them
+  int frames = 0;        ///< number of processed frames
+  int most_inliers = 0;  ///< greatest number of inliers of any of them
 };
 
-/// Does this frame become a key frame? Decided from frame numbers and counts alone, never from how
-/// busy the machine is.
+/// Whether a frame becomes a key frame. Depends on frame numbers and counts alone, never on time.
 [[nodiscard]] bool wants_keyframe(const KeyframePolicyConfig& config,
                                   const TrackedFrame& frame,
                                   const KeyframeAge& since_keyframe,

@@ -7,18 +7,18 @@
 
 namespace stillmap {
 
-/// Constant velocity: the motion between the last two frames goes on, in proportion to the time.
+/// Constant velocity: the motion between the last two frames continues, in proportion to time.
 class MotionModel {
  public:
-  /// The camera was at `T_before_after` of its earlier place after `duration_s`.
+  /// Observes that the camera moved by `T_before_after` in `duration_s`.
   void set(const Eigen::Isometry3d& T_before_after, double duration_s) {
     T_before_after_ = T_before_after;
     duration_s_ = duration_s;
   }
   void reset() { set(Eigen::Isometry3d::Identity(), 0); }
 
-  /// The motion expected in the next `duration_s`; none when nothing is known yet. A gap in the
-  /// sequence is bridged for a few frames' length only: nothing keeps its speed for long.
+  /// The motion predicted for the next `duration_s`; the identity before the first observation. A
+  /// gap in the sequence is bridged for the length of a few frames only, since speeds change.
   [[nodiscard]] Eigen::Isometry3d predict(double duration_s) const {
     if (duration_s_ <= 0) return Eigen::Isometry3d::Identity();
     constexpr double kMaxRatio = 3.0;

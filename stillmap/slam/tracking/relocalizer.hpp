@@ -7,6 +7,7 @@
 
 #include "stillmap/core/fields.hpp"
 #include "stillmap/geometry/camera.hpp"
+#include "stillmap/slam/features/matcher.hpp"
 #include "stillmap/slam/map/map.hpp"
 #include "stillmap/slam/map/place_index.hpp"
 #include "stillmap/slam/optim/measurement_model.hpp"
@@ -23,52 +24,67 @@ struct RelocalizerConfig {
   int min_inliers = 50;
   double min_share = 0.5;
   int new_world_after_frames = 60;
+  MatchRules appearance_match{.max_distance = 60, .max_ratio = 0.8};
+  MatchRules search_match{.max_distance = 64, .max_ratio = 0.9};
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("candidates",
           self.candidates,
-          FieldInfo{"key frames tried in a frame while lost", "", 1, 1000});
-    visit("iterations", self.iterations, FieldInfo{"of RANSAC, per key frame", "", 1, 100000});
+          FieldInfo{"number of key frames tried per frame while lost", "", 1, 1000});
+    visit("iterations",
+          self.iterations,
+          FieldInfo{"greatest number of RANSAC iterations per key frame", "", 1, 100000});
     visit("min_matches",
           self.min_matches,
-          FieldInfo{"by appearance that have one pose in common", "", 4, 1000});
-    visit("search_radius_px",
-          self.search_radius_px,
-          FieldInfo{"search for more landmarks from there, on the finest level", "px", 1, 100});
-    visit("local_keyframes",
-          self.local_keyframes,
-          FieldInfo{"key frames whose landmarks are searched then", "", 1, 1000});
-    visit("min_inliers", self.min_inliers, FieldInfo{"that prove a place", "", 4, 1000});
+          FieldInfo{"number of matches by appearance that must agree on one pose", "", 4, 1000});
+    visit(
+        "search_radius_px",
+        self.search_radius_px,
+        FieldInfo{"search radius for further landmarks from that pose, at the finest pyramid level",
+                  "px",
+                  1,
+                  100});
+    visit(
+        "local_keyframes",
+        self.local_keyframes,
+        FieldInfo{"number of key frames whose landmarks are searched from that pose", "", 1, 1000});
+    visit("min_inliers",
+          self.min_inliers,
+          FieldInfo{"number of landmarks that must be found", "", 4, 1000});
     visit("min_share",
           self.min_share,
-          FieldInfo{"of the landmarks that tracking would find there, found", "", 0, 2});
-    visit("new_world_after_frames",
-          self.new_world_after_frames,
-          FieldInfo{"lost for so long, the camera begins a new map, which joins the others when a "
-                    "place is recognised",
-                    "frames",
-                    1,
-                    1000000000});
+          FieldInfo{"share of the landmarks expected at the pose that must be found", "", 0, 2});
+    visit(
+        "new_world_after_frames",
+        self.new_world_after_frames,
+        common_setting(FieldInfo{
+            "number of lost frames after which a new submap begins; a loop joins it to the others",
+            "frames",
+            1,
+            1000000000}));
+    visit.group("appearance_match", self.appearance_match);
+    visit.group("search_match", self.search_match);
   }
 };
 
-/// A place that was found again.
+/// The result of a relocalisation.
 struct Relocalization {
   Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();
   std::vector<std::pair<std::uint32_t, LandmarkId>> matches;  ///< (feature, landmark), inliers
-  /// Landmarks of the key frame that are found, to those that tracking would find there, as often
-  /// as it found each of them when it should have seen it. About 1 at a known place.
+  /// The ratio of the matched landmarks of the key frame to those that tracking would match there,
+  /// each weighted by the share of frames in which tracking found it when expected. About 1 at a
+  /// known place.
   double share = 0;
 };
 
-/// Finds a frame's pose without knowing where the camera is.
+/// Finds the pose of a frame without a prediction.
 ///
-/// Each key frame that looks like the frame is matched by appearance; the pose of three matches
-/// with depth that most matches agree with (RANSAC; those without depth count too) is refined, more
-/// landmarks are looked for where it says, and it is refined with them. Many of the landmarks that
-/// should be seen have to be: a place that only has some things in common with a known one is not
-/// it.
+/// Each key frame that looks like the frame is matched by appearance. RANSAC finds the pose from
+/// three matches with depth that most matches agree with, including those without depth. The pose
+/// is refined, more landmarks are searched from it, and it is refined with them. Many of the
+/// landmarks that should be visible must be matched, since another place may have some objects in
+/// common with a known one.
 class Relocalizer {
  public:
   Relocalizer(const RelocalizerConfig& config,
@@ -76,8 +92,8 @@ class Relocalizer {
               MeasurementModel measure,
               std::uint32_t seed);
 
-  /// Of the key frames that look most like the frame, the place with most landmarks found. Nothing
-  /// when none fits. `places` holds key frames of the map.
+  /// The place with the most matched landmarks among the key frames that look most like the frame.
+  /// Nothing when none fits. `places` has key frames of the map.
   [[nodiscard]] std::optional<Relocalization> find(FrameId frame,
                                                    const Features& features,
                                                    const Map& map,

@@ -3,17 +3,17 @@
 
 #include <algorithm>
 
-#include <Eigen/Cholesky>
-
 #include "stillmap/geometry/se3.hpp"
+#include "stillmap/slam/optim/symmetric_solver.hpp"
 
 namespace stillmap {
 namespace {
 
-// What is known before the first frame: within 10 ms of the camera's stated readout.
+// The prior before the first frame: within 10 ms of the camera's given readout time.
 constexpr double kPriorSigma = 0.01;
 
-// A frame that could not tell the readout this well by itself has moved too little to count.
+// A frame that alone determines the readout less accurately than this has moved too little to
+// count.
 constexpr double kUsefulSigma_s = 0.02;
 
 }  // namespace
@@ -58,15 +58,15 @@ void ReadoutEstimator::update(const Eigen::Isometry3d& T_camera_world,
                               std::span<const PoseObservation> observations,
                               std::span<const double> rows) {
   if (!config_.calibrate) return;
-  // Least squares in the pose and the readout, over residuals that end up as r + J [pose; readout]:
-  // correcting for a longer readout moves the measurement by -row * velocity.
+  // Least squares in pose and readout over the residuals r + J [pose; readout]: correcting for a
+  // longer readout moves the measurement by -row * velocity.
   Matrix6d H = Matrix6d::Zero();
   Vector6d cross = Vector6d::Zero(), g = Vector6d::Zero();
   double information = 0, gradient = 0;
   for (std::size_t i = 0; i < observations.size(); ++i) {
     const PointMeasurement& m = observations[i].measurement;
-    // Without depth a feature is only turned back, so what is left of its error is no error of the
-    // readout alone.
+    // A feature without depth is corrected for rotation only, so that its remaining error is not
+    // due to the readout alone.
     if (!m.has_depth()) continue;
     const Eigen::Vector3d p = T_camera_world * observations[i].p_world;
     const Eigen::Vector3d r = reprojection_residual(camera_, m, p);
@@ -80,13 +80,13 @@ void ReadoutEstimator::update(const Eigen::Isometry3d& T_camera_world,
     gradient += j.dot(r);
   }
   H.diagonal().array() += 1e-9;
-  const Vector6d eliminated = H.ldlt().solve(cross);
+  const Vector6d eliminated = solve_symmetric(H, cross);
   information -= cross.dot(eliminated);
   gradient -= g.dot(eliminated);
-  // What was learnt in motion is not forgotten while the camera stands: the little "motion" that
-  // noise makes there tells nothing and would pull the estimate to zero.
+  // The estimate is kept while the camera stands still: noise looks like slight motion, has no
+  // information, and would pull the estimate to zero.
   if (!(information * kUsefulSigma_s * kUsefulSigma_s > 1)) return;
-  // The residuals belong to the readout that was corrected with; the estimate may differ from it.
+  // The residuals are those of the corrected readout, which may differ from the estimate.
   gradient += information * (estimate_s_ - readout_s());
   information_ = config_.memory * information_ + information;
   estimate_s_ = std::clamp(estimate_s_ - gradient / information_, 0.0, config_.max_readout_s);

@@ -13,23 +13,23 @@
 
 namespace stillmap {
 
-/// Velocity of the camera in its own axes.
+/// The velocity of the camera in camera coordinates.
 struct CameraVelocity {
   Eigen::Vector3d linear = Eigen::Vector3d::Zero();   ///< m/s
   Eigen::Vector3d angular = Eigen::Vector3d::Zero();  ///< rad/s
 
-  /// Velocity that a standing point has as the camera sees it.
+  /// The velocity of a static point in camera coordinates.
   [[nodiscard]] Eigen::Vector3d of_point(const Eigen::Vector3d& p_camera) const;
 };
 
-/// The mean velocity over a motion that took `duration_s`; none if that is not positive.
+/// The mean velocity of a motion of `duration_s`; zero if that is not positive.
 [[nodiscard]] CameraVelocity mean_velocity(const Eigen::Isometry3d& T_before_after,
                                            double duration_s);
 
-/// A rolling shutter reads an image row by row, over `readout_s` from the first to the last, while
-/// the camera moves: at 0.4 m/s and 1 m distance that is 5 pixels between the top and the bottom of
-/// a Kinect's image. Moves each feature (pixel and depth) to where it was when the middle row was
-/// read, which is the instant that poses refer to. Features without depth are turned only.
+/// Moves each feature (pixel and depth) to its position at the readout of the middle row, the time
+/// to which poses refer. A rolling shutter reads an image row by row, in `readout_s` from the first
+/// to the last, while the camera moves: at 0.4 m/s and 1 m distance this shifts the top against the
+/// bottom of a Kinect's image by 5 pixels. Features without depth are only rotated.
 [[nodiscard]] Features undo_rolling_shutter(Features features,
                                             const CameraModel& camera,
                                             double readout_s,
@@ -45,33 +45,38 @@ struct ShutterConfig {
   static void fields(Self& self, Visitor& visit) {
     visit("calibrate",
           self.calibrate,
-          FieldInfo{"estimate the camera's rolling shutter while tracking"});
+          common_setting(FieldInfo{"whether the readout time of the camera's rolling shutter is "
+                                   "estimated while tracking"}));
     visit("min_readout_s",
           self.min_readout_s,
-          FieldInfo{"a shorter readout counts as a global shutter", "s", 0, 0.2});
+          FieldInfo{"shortest readout time of a rolling shutter; a shorter estimate counts as a "
+                    "global shutter",
+                    "s",
+                    0,
+                    0.2});
     visit("max_readout_s",
           self.max_readout_s,
-          FieldInfo{"longest readout of an image that is believed", "s", 0, 0.2});
+          FieldInfo{"longest readout time that the estimate may reach", "s", 0, 0.2});
     visit("memory",
           self.memory,
-          FieldInfo{"weight of what was learnt before, from frame to frame", "", 0, 0.9999});
+          FieldInfo{"weight of the earlier frames in the estimate, per frame", "", 0, 0.9999});
   }
 };
 
-/// Learns the readout time from how reprojection errors grow from row to row with the camera's
-/// velocity: a recursive least-squares estimate of one number, each frame's pose eliminated. A
-/// global shutter comes out as 0.
+/// Estimates the readout time from the growth of reprojection errors with the row and the camera's
+/// velocity: a recursive least-squares estimate of one number, with the pose of each frame
+/// eliminated. For a global shutter it is 0.
 class ReadoutEstimator {
  public:
   ReadoutEstimator(const ShutterConfig& config, const CameraModel& camera);
 
-  /// What to correct with: 0 while the estimate is too short for a real rolling shutter.
+  /// The readout time for correction; 0 while the estimate is too short for a rolling shutter.
   [[nodiscard]] double readout_s() const {
     return estimate_s_ < config_.min_readout_s ? 0.0 : estimate_s_;
   }
 
-  /// `observations` are the inliers of a frame's pose, corrected with readout_s();
-  /// `rows` where their features were in the image, in image heights from its middle.
+  /// `observations` are the inliers of a frame's pose, corrected with readout_s(). `rows` are the
+  /// positions of their features in image heights from the middle row.
   void update(const Eigen::Isometry3d& T_camera_world,
               const CameraVelocity& velocity,
               std::span<const PoseObservation> observations,

@@ -11,17 +11,17 @@
 
 namespace stillmap {
 
-/// What tracking says of one frame.
+/// The result of tracking for one frame.
 struct TrackedFrame {
   FrameId id;
   double stamp_s = 0;
   TrackingStatus status = TrackingStatus::kLost;
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< unless lost
-  KeyframeId reference;  ///< the key frame that shares most landmarks with it
+  KeyframeId reference;  ///< the key frame that shares most landmarks with the frame
   FeaturesPtr features;
   std::vector<LandmarkId> landmarks;  ///< per feature: inliers of the pose; invalid for others
   int inliers = 0;
-  std::vector<LandmarkId> expected;  ///< landmarks that should have been seen
+  std::vector<LandmarkId> expected;  ///< landmarks that should be visible
 };
 
 [[nodiscard]] inline bool has_pose(const TrackedFrame& frame) {

@@ -7,6 +7,7 @@
 #include "stillmap/core/rgbd_frame.hpp"
 #include "stillmap/geometry/camera.hpp"
 #include "stillmap/slam/features/features.hpp"
+#include "stillmap/slam/features/matcher.hpp"
 #include "stillmap/slam/map/map.hpp"
 #include "stillmap/slam/optim/measurement_model.hpp"
 #include "stillmap/slam/optim/pose_optimizer.hpp"
@@ -21,33 +22,63 @@ struct TrackerConfig {
   double frame_search_radius_px = 15;
   double map_search_radius_px = 8;
   int local_keyframes = 30;
+  int min_frame_matches = 20;
+  int min_frame_inliers = 10;
   int min_inliers = 30;
+  MatchRules frame_match{.max_distance = 90};
+  MatchRules reference_match{.max_distance = 60, .max_ratio = 0.7};
+  MatchRules map_match{.max_distance = 90, .max_ratio = 0.8};
   ShutterConfig shutter;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("frame_search_radius_px",
           self.frame_search_radius_px,
-          FieldInfo{"search for the last frame's points, on the finest level", "px", 1, 200});
+          FieldInfo{"search radius for the previous frame's landmarks, at the finest pyramid level",
+                    "px",
+                    1,
+                    200});
     visit("map_search_radius_px",
           self.map_search_radius_px,
-          FieldInfo{"search for the local map's points, on the finest level", "px", 1, 100});
+          FieldInfo{"search radius for the local map's landmarks, at the finest pyramid level",
+                    "px",
+                    1,
+                    100});
     visit("local_keyframes",
           self.local_keyframes,
-          FieldInfo{"key frames whose landmarks are searched in a frame", "", 1, 1000});
+          FieldInfo{
+              "number of key frames whose landmarks form the local map of a frame", "", 1, 1000});
+    visit("min_frame_matches",
+          self.min_frame_matches,
+          FieldInfo{"number of matches with the previous frame, or with the reference key frame, "
+                    "needed to estimate a pose",
+                    "",
+                    3,
+                    1000});
+    visit("min_frame_inliers",
+          self.min_frame_inliers,
+          FieldInfo{"number of these matches that must agree with the pose", "", 3, 1000});
+    visit.group("frame_match", self.frame_match);
+    visit.group("reference_match", self.reference_match);
+    visit.group("map_match", self.map_match);
     visit.group("shutter", self.shutter);
     visit("min_inliers",
           self.min_inliers,
-          FieldInfo{"landmarks that must be found for a frame to be tracked", "", 6, 1000});
+          common_setting(FieldInfo{
+              "number of landmarks that a frame must match to be tracked; with fewer it is lost",
+              "",
+              6,
+              1000}));
   }
 };
 
-/// The camera's pose, frame after frame, against a map that it only reads.
+/// Tracks the camera's pose frame by frame against a map, which it only reads.
 ///
-/// Each frame is first matched to the last one under constant velocity (with a wider search, and
-/// then with the reference key frame by appearance, if that fails), then to the local map: the
-/// landmarks of the key frames that share landmarks with it. When lost, it looks for a known place
-/// in every frame. Poses are kept relative to key frames, so that changes of the map reach them.
+/// Each frame is first matched to the previous one under constant velocity; if that fails, with a
+/// wider search, then with the reference key frame by appearance. Then it is matched to the local
+/// map: the landmarks of the key frames that share landmarks with it. While lost, it tries to
+/// relocalise in every frame. Poses are kept relative to key frames, so that they follow changes of
+/// the map.
 class Tracker {
  public:
   Tracker(const TrackerConfig& config,
@@ -56,31 +87,31 @@ class Tracker {
           MeasurementModel measure,
           std::uint32_t seed);
 
-  /// The frame that a world begins with: at its origin.
+  /// Begins a submap with a frame, whose camera becomes its origin.
   [[nodiscard]] TrackedFrame start(const RgbdFrame& frame, FeaturesPtr features);
 
-  /// Lost as long as no world was begun and no place of the map is recognised. `places` holds the
-  /// map's key frames, to look for the camera among them.
+  /// The result is lost until a submap was begun or a place of the map is recognised. `places` has
+  /// the key frames of the map, for relocalisation.
   [[nodiscard]] TrackedFrame track(const RgbdFrame& frame,
                                    Features features,
                                    const Map& map,
                                    const PlaceIndex& places);
 
-  /// Where the camera should be at a time soon after the last frame; nothing when it is lost or has
-  /// not begun.
+  /// The predicted pose at a time soon after the last frame; nothing while lost and before the
+  /// first frame.
   [[nodiscard]] std::optional<Eigen::Isometry3d> expected_pose(double stamp_s,
                                                                const Map& map) const;
 
-  /// The camera's rolling shutter, as learnt so far.
+  /// The present estimate of the readout time of the camera's rolling shutter.
   [[nodiscard]] double readout_s() const { return readout_.readout_s(); }
 
-  /// The last frame has become a key frame of the map.
+  /// Tells the tracker that the last frame has become a key frame of the map.
   void set_reference(KeyframeId keyframe, const Map& map);
 
  private:
   struct Match {
     std::uint32_t feature;
-    LandmarkId landmark;  // invalid for a point of the last frame that is no landmark
+    LandmarkId landmark;  // invalid for a point of the previous frame that is no landmark
     Eigen::Vector3d p_world;
   };
   using Matches = std::vector<Match>;
