@@ -12,7 +12,7 @@ namespace stillmap {
 
 /// The pixels of an undamaged plain PNG: stored as the kind asked for, not interlaced, no larger
 /// than kMaxImageSidePx. Nothing for any other file: libpng reads the other kinds and describes
-/// damage. Takes less than half of libpng's time.
+/// damage. Takes 55 to 85 % of libpng's time.
 [[nodiscard]] std::optional<cv::Mat> decode_plain_png(std::string_view bytes, PngKind kind);
 
 }  // namespace stillmap
