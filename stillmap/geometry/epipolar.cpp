@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stillmap/geometry/epipolar.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -8,7 +9,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 
-#include "stillmap/core/random.hpp"
+#include "stillmap/geometry/ransac.hpp"
 #include "stillmap/geometry/se3.hpp"
 
 namespace stillmap {
@@ -50,14 +51,19 @@ Eigen::Matrix3d rank_two(const Eigen::Matrix3d& F) {
   return svd.matrixU() * values.asDiagonal() * svd.matrixV().transpose();
 }
 
-struct Scored {
+/// How well matches agree with a fundamental matrix.
+struct Agreement {
   std::vector<std::uint8_t> inlier;
   int inliers = 0;
-  double cost = 0;  // truncated squares
+  double cost = std::numeric_limits<double>::infinity();  // truncated squares
+
+  friend bool operator<(const Agreement& a, const Agreement& b) { return a.cost > b.cost; }
 };
 
-Scored score(const Eigen::Matrix3d& F, std::span<const PointMatch> matches, double bound_px) {
-  Scored result{std::vector<std::uint8_t>(matches.size(), 0), 0, 0};
+Agreement agreement_with(const Eigen::Matrix3d& F,
+                         std::span<const PointMatch> matches,
+                         double bound_px) {
+  Agreement result{std::vector<std::uint8_t>(matches.size(), 0), 0, 0};
   for (std::size_t i = 0; i < matches.size(); ++i) {
     const double d = epipolar_distance(F, matches[i]);
     const bool fits = d <= bound_px;
@@ -68,28 +74,21 @@ Scored score(const Eigen::Matrix3d& F, std::span<const PointMatch> matches, doub
   return result;
 }
 
-std::vector<PointMatch> draw(std::span<const PointMatch> matches, std::mt19937& rng) {
-  const auto n = static_cast<std::uint32_t>(matches.size());
-  std::array<std::uint32_t, kSample> chosen{};
-  std::vector<PointMatch> sample;
-  while (sample.size() < kSample) {
-    const std::uint32_t i = draw_index(rng, n);
-    bool known = false;
-    for (std::size_t k = 0; k < sample.size(); ++k) known = known || chosen[k] == i;
-    if (known) continue;
-    chosen[sample.size()] = i;
-    sample.push_back(matches[i]);
-  }
-  return sample;
+std::array<PointMatch, kSample> draw(std::span<const PointMatch> matches, std::mt19937& rng) {
+  std::array<PointMatch, kSample> drawn;
+  const auto sample =
+      draw_without_replacement<kSample>(rng, static_cast<std::uint32_t>(matches.size()));
+  std::ranges::transform(sample, drawn.begin(), [&](std::uint32_t i) { return matches[i]; });
+  return drawn;
 }
 
-/// Draws after which a sample of inliers alone has been drawn almost surely.
-int draws_needed(int inliers, std::size_t matches, int at_most) {
-  const double share = static_cast<double>(inliers) / static_cast<double>(matches);
-  const double good = std::pow(share, static_cast<double>(kSample));
-  if (good >= 1.0) return 1;
-  const double needed = std::log(0.005) / std::log1p(-good);
-  return needed < at_most ? static_cast<int>(std::ceil(needed)) : at_most;
+std::vector<PointMatch> inliers_of(std::span<const PointMatch> matches,
+                                   const Agreement& agreement) {
+  std::vector<PointMatch> inliers;
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    if (agreement.inlier[i] != 0) inliers.push_back(matches[i]);
+  }
+  return inliers;
 }
 
 }  // namespace
@@ -137,27 +136,27 @@ std::optional<FundamentalEstimate> estimate_fundamental(std::span<const PointMat
                                                         int max_iterations,
                                                         std::mt19937& rng) {
   if (matches.size() < kSample) return std::nullopt;
-  Eigen::Matrix3d best_F = Eigen::Matrix3d::Zero();
-  Scored best{{}, 0, std::numeric_limits<double>::infinity()};
-  int iterations = max_iterations;
-  const auto offer = [&](const std::optional<Eigen::Matrix3d>& F) {
-    if (!F) return;
-    Scored scored = score(*F, matches, bound_px);
-    if (scored.cost >= best.cost) return;
-    best_F = *F;
-    best = std::move(scored);
-    iterations = draws_needed(best.inliers, matches.size(), max_iterations);
+  constexpr int kMinInliers = static_cast<int>(kSample);
+  const auto agreement = [&](const Eigen::Matrix3d& F) {
+    return agreement_with(F, matches, bound_px);
   };
-  for (int i = 0; i < iterations; ++i) offer(eight_point(draw(matches, rng)));
-  for (int round = 0; round < 3 && best.inliers >= static_cast<int>(kSample); ++round) {
-    std::vector<PointMatch> fitting;
-    for (std::size_t i = 0; i < matches.size(); ++i) {
-      if (best.inlier[i] != 0) fitting.push_back(matches[i]);
-    }
-    offer(eight_point(fitting));
+  auto best = ransac(
+      max_iterations,
+      Agreement{},
+      [&] { return eight_point(draw(matches, rng)); },
+      agreement,
+      [&](const Agreement& of) {
+        return ransac_iterations(of.inliers, matches.size(), kSample, max_iterations);
+      });
+  for (int round = 0; round < 3 && best && best->support.inliers >= kMinInliers; ++round) {
+    const std::optional<Eigen::Matrix3d> F = eight_point(inliers_of(matches, best->support));
+    if (!F) break;
+    Agreement refined = agreement(*F);
+    if (!(best->support < refined)) break;
+    best = {*F, std::move(refined)};
   }
-  if (best.inliers < static_cast<int>(kSample)) return std::nullopt;
-  return FundamentalEstimate{best_F, std::move(best.inlier), best.inliers};
+  if (!best || best->support.inliers < kMinInliers) return std::nullopt;
+  return FundamentalEstimate{best->model, std::move(best->support.inlier), best->support.inliers};
 }
 
 }  // namespace stillmap

@@ -15,6 +15,7 @@
 #include "stillmap/core/error.hpp"
 #include "stillmap/core/random.hpp"
 #include "stillmap/dense/voxel_grid.hpp"
+#include "stillmap/geometry/ransac.hpp"
 #include "tooling/export/voxel_walk.hpp"
 
 namespace stillmap {
@@ -189,10 +190,10 @@ std::vector<Candidate> draw_candidates(const Surface& surface, const CameraEvide
   }
   std::vector<Candidate> candidates;
   for (int i = 0; i < kDraws; ++i) {
-    const Eigen::Vector3d& a = surface.level[draw(surface.level)];
-    const Eigen::Vector3d& b = surface.level[draw(surface.level)];
-    const Eigen::Vector3d& c = surface.level[draw(surface.level)];
-    const std::optional<FloorPlane> plane = plane_through(a, b, c);
+    const Sample<3> sample =
+        draw_with_replacement<3>(rng, static_cast<std::uint32_t>(surface.level.size()));
+    const std::optional<FloorPlane> plane =
+        plane_through(surface.level[sample[0]], surface.level[sample[1]], surface.level[sample[2]]);
     const std::optional<FloorPlane> floor = plane ? cameras.as_floor(*plane) : std::nullopt;
     if (!floor || too_much_below(*floor, part_of_all)) continue;
     const auto on = std::ranges::count_if(

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "stillmap/core/fields.hpp"
 #include "stillmap/slam/features/features.hpp"
 
 namespace stillmap {
@@ -29,6 +30,21 @@ struct FeatureMatch {
 struct MatchRules {
   int max_distance = 100;  ///< Hamming, of 256
   double max_ratio = 1.0;  ///< best to second best distance, asked where both are on one level
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("max_distance",
+          self.max_distance,
+          FieldInfo{
+              "differing bits of the 256 of two descriptors that match, at most", "bits", 0, 256});
+    visit("max_ratio",
+          self.max_ratio,
+          FieldInfo{"distance of the best match to that of the second best on the same pyramid "
+                    "level, at most; 1 accepts any",
+                    "",
+                    0,
+                    1});
+  }
 };
 
 /// The best feature for each projection, one to one: of several projections that want one feature

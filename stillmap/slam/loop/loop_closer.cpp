@@ -5,7 +5,6 @@
 #include <set>
 
 #include "stillmap/slam/map/covisibility.hpp"
-#include "stillmap/slam/mapping/landmark_fusion.hpp"
 
 namespace stillmap {
 namespace {
@@ -76,15 +75,15 @@ void merge_ends(Map& map,
                 const LoopMatch& found,
                 const CameraModel& camera,
                 const MeasurementModel& measure,
-                double radius_px) {
+                const LandmarkFusionConfig& config) {
   // Before the matches join them, so that each is a neighbourhood of its own.
   const std::vector<KeyframeId> earlier = end_of_loop(map, found.edge.a);
   const std::vector<KeyframeId> later = end_of_loop(map, found.edge.b);
   merge_matches(map, found);
   const std::vector<LandmarkId> old = landmarks_seen(map, earlier);
-  for (const KeyframeId id : later) fuse_landmarks(map, id, old, camera, measure, radius_px);
+  for (const KeyframeId id : later) fuse_landmarks(map, id, old, camera, measure, config);
   for (const KeyframeId id : earlier) {
-    fuse_landmarks(map, id, landmarks_seen(map, later), camera, measure, radius_px);
+    fuse_landmarks(map, id, landmarks_seen(map, later), camera, measure, config);
   }
   for (const std::vector<KeyframeId>& end : {earlier, later}) {
     for (const LandmarkId id : landmarks_seen(map, end)) map.refresh(id);
@@ -107,7 +106,7 @@ bool close_loop(Map& map,
     loops.pop_back();
     return false;
   }
-  merge_ends(map, found, camera, measure, config.fusion_radius_px);
+  merge_ends(map, found, camera, measure, config.fusion);
   (void)map.take_changes();  // of the whole map: nobody waits for them
   return true;
 }

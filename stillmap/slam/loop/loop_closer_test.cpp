@@ -149,7 +149,7 @@ TEST(LoopCloser, WhatTheLoopMatchedBecomesOneAlsoWhereNothingElseIsLookedFor) {
   const Keyframe earlier = round.map.keyframe(found.edge.a),
                  later = round.map.keyframe(found.edge.b);
   LoopConfig config;
-  config.fusion_radius_px = 1e-9;
+  config.fusion.radius_px = 1e-9;
   std::vector<LoopEdge> loops;
   ASSERT_TRUE(close_loop(round.map, loops, found, world().camera(), loop_measure(world()), config));
   round.map.check_consistency();

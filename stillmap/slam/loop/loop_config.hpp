@@ -5,6 +5,7 @@
 #include "stillmap/slam/loop/essential_graph.hpp"
 #include "stillmap/slam/loop/loop_gate.hpp"
 #include "stillmap/slam/loop/loop_verifier.hpp"
+#include "stillmap/slam/mapping/landmark_fusion.hpp"
 #include "stillmap/slam/optim/bundle_adjuster.hpp"
 #include "stillmap/slam/optim/pose_graph.hpp"
 
@@ -15,7 +16,7 @@ struct LoopConfig {
   int candidates = 3;
   double inverse_depth_sigma = 0.01;
   double max_edge_chi2 = 100;
-  double fusion_radius_px = 8;
+  LandmarkFusionConfig fusion{.radius_px = 8};
   int adjustment_lag_frames = 60;
   LoopGateConfig gate;
   LoopVerifierConfig verifier;
@@ -44,12 +45,7 @@ struct LoopConfig {
                     "",
                     1,
                     1e9});
-    visit("fusion_radius_px",
-          self.fusion_radius_px,
-          FieldInfo{"search for a landmark of one end of a loop in the other, on the finest level",
-                    "px",
-                    0.5,
-                    50});
+    LandmarkFusionConfig::fields(self.fusion, visit);
     visit("adjustment_lag_frames",
           self.adjustment_lag_frames,
           FieldInfo{"the adjustment of the whole map to a loop reaches it so many frames later, or "

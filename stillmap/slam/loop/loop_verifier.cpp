@@ -4,21 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
-
 #include "stillmap/core/random.hpp"
+#include "stillmap/geometry/ransac.hpp"
 #include "stillmap/geometry/rigid_alignment.hpp"
 #include "stillmap/slam/map/landmark_projection.hpp"
 #include "stillmap/slam/optim/pose_optimizer.hpp"
+#include "stillmap/slam/optim/symmetric_solver.hpp"
 #include "stillmap/slam/optim/three_points.hpp"
 
 namespace stillmap {
-namespace {
-
-constexpr double kGuidedRadius_px = 6.0;
-constexpr int kGuidedDistance = 64;
-
-}  // namespace
 
 LoopVerifier::LoopVerifier(const LoopVerifierConfig& config,
                            const CameraModel& camera,
@@ -32,7 +26,7 @@ std::vector<LoopVerifier::Match> LoopVerifier::match(const LoopView& a, const Lo
     if (b.p_camera[i]) with_point.push_back(i);
   }
   const std::vector<FeatureMatch> by_appearance =
-      match_all(*b.features, with_point, *a.features, {.max_distance = 60, .max_ratio = 0.85});
+      match_all(*b.features, with_point, *a.features, config_.appearance_match);
   std::vector<Match> matches;
   for (const FeatureMatch& m :
        keep_consistent_rotations(by_appearance, b.features->angle_deg, a.features->angle_deg)) {
@@ -72,23 +66,23 @@ std::optional<Eigen::Isometry3d> LoopVerifier::sample(FrameId frame,
                                                       std::span<const Match> matches) const {
   const auto count = static_cast<std::uint32_t>(matches.size());
   std::mt19937 rng = rng_for(seed_, frame, RandomPurpose::kLoop);
-  std::optional<Eigen::Isometry3d> best;
-  auto best_support = static_cast<std::size_t>(config_.min_matches - 1);
-  for (int iteration = 0; iteration < config_.iterations; ++iteration) {
+  const auto motion_of_three = [&]() -> std::optional<Eigen::Isometry3d> {
+    const Sample<3> sample = draw_with_replacement<3>(rng, count);
     PointTriple in_a, in_b;
     for (std::size_t i = 0; i < 3; ++i) {
-      const Match& pick = matches[draw_index(rng, count)];
+      const Match& pick = matches[sample[i]];
       in_a[i] = *a.p_camera[pick.first];
       in_b[i] = *b.p_camera[pick.second];
     }
-    if (!same_shape(in_a, in_b)) continue;
-    const Eigen::Isometry3d T_a_b = align_rigid(in_b, in_a);
-    const std::size_t support = agreeing(a, b, T_a_b, matches).size();
-    if (support <= best_support) continue;
-    best_support = support;
-    best = T_a_b;
-  }
-  return best;
+    if (!same_shape(in_a, in_b)) return std::nullopt;
+    return align_rigid(in_b, in_a);
+  };
+  const auto best =
+      ransac(config_.iterations,
+             static_cast<std::size_t>(config_.min_matches - 1),
+             motion_of_three,
+             [&](const Eigen::Isometry3d& T_a_b) { return agreeing(a, b, T_a_b, matches).size(); });
+  return best ? std::optional(best->model) : std::nullopt;
 }
 
 // Half way between what a sees of b's points and what b sees of a's.
@@ -119,11 +113,10 @@ LoopVerifier::Spread LoopVerifier::spread(const LoopView& a,
         pose_jacobian(reprojection_jacobian(camera_, m, p_a), p_a);
     H.noalias() += J.transpose() * J;
   }
-  const Eigen::LDLT<Matrix6d> factors(H);
-  if (factors.info() != Eigen::Success || factors.rcond() < 1e-12) return {};
-  const Matrix6d covariance = factors.solve(Matrix6d::Identity());
-  return {std::sqrt(covariance.topLeftCorner<3, 3>().trace()),
-          std::sqrt(covariance.bottomRightCorner<3, 3>().trace())};
+  const std::optional<Matrix6d> covariance = inverse_of_symmetric(H, 1e-12);
+  if (!covariance) return {};
+  return {std::sqrt(covariance->topLeftCorner<3, 3>().trace()),
+          std::sqrt(covariance->bottomRightCorner<3, 3>().trace())};
 }
 
 // Where a should see b's points; the descriptor is null for those that it should not see.
@@ -145,7 +138,7 @@ std::vector<Projection> LoopVerifier::project(const LoopView& b,
     Projection& projection = projections[i];
     projection.px = camera_.project(p_a).cast<float>();
     projection.radius_px =
-        static_cast<float>(kGuidedRadius_px) * scales[static_cast<std::size_t>(level)];
+        static_cast<float>(config_.search_radius_px) * scales[static_cast<std::size_t>(level)];
     projection.inverse_depth = static_cast<float>(1.0 / p_a.z());
     projection.max_inverse_depth_error = inverse_depth_gate(1.0 / p_a.z());
     projection.min_level = level - 1;
@@ -180,7 +173,7 @@ std::optional<LoopMatch> LoopVerifier::verify(FrameId frame,
     }
     std::vector<Match> guided;
     for (const FeatureMatch& m :
-         match_projections(projections, *a.features, {}, {.max_distance = kGuidedDistance})) {
+         match_projections(projections, *a.features, {}, config_.search_match)) {
       guided.emplace_back(m.feature, seen[m.query]);
     }
     T_a_b = refine(a, b, T_a_b, agreeing(a, b, T_a_b, guided));

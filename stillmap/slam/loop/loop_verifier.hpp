@@ -21,6 +21,9 @@ struct LoopVerifierConfig {
   int min_inliers = 40;
   double min_share = 0.2;
   double max_sigma_m = 0.1;
+  double search_radius_px = 6;
+  MatchRules appearance_match{.max_distance = 60, .max_ratio = 0.85};
+  MatchRules search_match{.max_distance = 64};
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -35,6 +38,13 @@ struct LoopVerifierConfig {
     visit("max_sigma_m",
           self.max_sigma_m,
           FieldInfo{"error of the position that the matches leave, at most", "m", 0, 10});
+    visit(
+        "search_radius_px",
+        self.search_radius_px,
+        FieldInfo{
+            "search for more matches once a motion is found, on the finest level", "px", 0.5, 100});
+    visit.group("appearance_match", self.appearance_match);
+    visit.group("search_match", self.search_match);
   }
 };
 

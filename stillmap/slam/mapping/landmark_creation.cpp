@@ -6,16 +6,11 @@
 #include <numbers>
 #include <optional>
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
-
 #include "stillmap/slam/map/covisibility.hpp"
 #include "stillmap/slam/optim/reprojection.hpp"
 
 namespace stillmap {
 namespace {
-
-constexpr int kMaxDistance = 50;
 
 struct Ray {
   Eigen::Vector3d origin;
@@ -73,16 +68,17 @@ std::optional<std::uint32_t> match_on_line(const Eigen::Vector3d& line,
                                            const Descriptor& descriptor,
                                            const Features& b,
                                            std::span<const std::uint32_t> free_b,
-                                           const std::vector<float>& level_scales) {
+                                           const std::vector<float>& level_scales,
+                                           const LandmarkCreationConfig& config) {
   const double norm = std::hypot(line.x(), line.y());
-  int best = kMaxDistance + 1;
+  int best = config.max_distance + 1;
   std::optional<std::uint32_t> match;
   for (const std::uint32_t j : free_b) {
     const int distance = hamming_distance(descriptor, b.descriptors[j]);
     if (distance >= best) continue;
     const Eigen::Vector2d px = b.px[j].cast<double>();
     const double off = std::abs(line.x() * px.x() + line.y() * px.y() + line.z()) / norm;
-    if (off > 2.0 * static_cast<double>(level_scales[b.level[j]])) continue;
+    if (off > config.max_line_px * static_cast<double>(level_scales[b.level[j]])) continue;
     best = distance;
     match = j;
   }
@@ -95,17 +91,17 @@ int triangulate_pair(Map& map,
                      KeyframeId b_id,
                      const CameraModel& camera,
                      const MeasurementModel& measure,
-                     double min_parallax_deg) {
+                     const LandmarkCreationConfig& config) {
   const Keyframe& a = map.keyframe(a_id);
   const Keyframe& b = map.keyframe(b_id);
   const Eigen::Matrix3d F = fundamental(camera, a, b);
-  const double max_cosine = std::cos(min_parallax_deg * std::numbers::pi / 180.0);
+  const double max_cosine = std::cos(config.min_parallax_deg * std::numbers::pi / 180.0);
   const std::vector<std::uint32_t> free_b = free_features(b);
   int made = 0;
   for (const std::uint32_t i : free_features(a)) {
     const Eigen::Vector3d line = F * a.features->px[i].cast<double>().homogeneous();
     const std::optional<std::uint32_t> j = match_on_line(
-        line, a.features->descriptors[i], *b.features, free_b, measure.level_scales());
+        line, a.features->descriptors[i], *b.features, free_b, measure.level_scales(), config);
     if (!j || b.landmarks[*j].valid()) continue;
     const Ray ray_a = feature_ray(camera, a, i), ray_b = feature_ray(camera, b, *j);
     if (ray_a.direction.dot(ray_b.direction) > max_cosine) continue;
@@ -154,7 +150,7 @@ int triangulate_landmarks(Map& map,
   int made = 0, tried = 0;
   for (const CovisibleKeyframe& neighbor : covisible_keyframes(map, keyframe)) {
     if (tried++ >= config.neighbors) break;
-    made += triangulate_pair(map, keyframe, neighbor.id, camera, measure, config.min_parallax_deg);
+    made += triangulate_pair(map, keyframe, neighbor.id, camera, measure, config);
   }
   return made;
 }

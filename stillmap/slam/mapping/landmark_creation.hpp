@@ -13,6 +13,8 @@ struct LandmarkCreationConfig {
   int min_landmarks = 100;
   int neighbors = 10;
   double min_parallax_deg = 1.0;
+  int max_distance = 50;
+  double max_line_px = 2.0;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -28,6 +30,19 @@ struct LandmarkCreationConfig {
     visit("min_parallax_deg",
           self.min_parallax_deg,
           FieldInfo{"angle between the rays of a triangulated point", "deg", 0.01, 45});
+    visit("max_distance",
+          self.max_distance,
+          FieldInfo{"differing bits of the 256 of two descriptors that are triangulated, at most",
+                    "bits",
+                    0,
+                    256});
+    visit("max_line_px",
+          self.max_line_px,
+          FieldInfo{"distance from the epipolar line of features that are triangulated, on the "
+                    "finest level",
+                    "px",
+                    0.1,
+                    50});
   }
 };
 

@@ -10,8 +10,6 @@
 namespace stillmap {
 namespace {
 
-constexpr int kMaxDistance = 50;
-
 bool seen_by(const Landmark& landmark, KeyframeId keyframe) {
   return std::ranges::binary_search(landmark.observations, keyframe, {}, &Observation::keyframe);
 }
@@ -23,7 +21,7 @@ int fuse_landmarks(Map& map,
                    std::span<const LandmarkId> landmarks,
                    const CameraModel& camera,
                    const MeasurementModel& measure,
-                   double radius_px) {
+                   const LandmarkFusionConfig& config) {
   const Eigen::Isometry3d T_camera_world = map.keyframe(keyframe).T_world_camera.inverse();
   const FeaturesPtr features = map.keyframe(keyframe).features;
   std::vector<LandmarkId> projected;
@@ -31,15 +29,15 @@ int fuse_landmarks(Map& map,
   for (const LandmarkId id : landmarks) {
     const Landmark* landmark = map.find(id);
     if (landmark == nullptr || seen_by(*landmark, keyframe)) continue;
-    const std::optional<Projection> projection =
-        project_landmark(camera, measure.level_scales(), T_camera_world, *landmark, radius_px);
+    const std::optional<Projection> projection = project_landmark(
+        camera, measure.level_scales(), T_camera_world, *landmark, config.radius_px);
     if (!projection) continue;
     projected.push_back(id);
     projections.push_back(*projection);
   }
   int found = 0;
   for (const FeatureMatch& match :
-       match_projections(projections, *features, {}, {.max_distance = kMaxDistance})) {
+       match_projections(projections, *features, {}, {.max_distance = config.max_distance})) {
     const LandmarkId id = projected[match.query];
     const Landmark* landmark = map.find(id);  // an earlier merge may have taken it
     if (landmark == nullptr || seen_by(*landmark, keyframe)) continue;

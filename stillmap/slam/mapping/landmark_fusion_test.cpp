@@ -11,7 +11,7 @@
 namespace stillmap {
 namespace {
 
-constexpr double kRadius = 6;
+const LandmarkFusionConfig kFusion{.radius_px = 6};
 
 MeasurementModel model(const SimulatedWorld& world) {
   return MeasurementModel({.pixel_sigma_px = 0.5, .inverse_depth_sigma = 0.01},
@@ -77,7 +77,7 @@ TEST(FuseLandmarks, MergesDuplicates) {
                                    seen_by(simulated.map, 0),
                                    world.camera(),
                                    model(world),
-                                   kRadius);
+                                   kFusion);
   EXPECT_GT(found, 0.9 * both);  // noise moves a few beyond the 95 % bound
   EXPECT_LE(found, both);
   EXPECT_EQ(simulated.map.landmark_count(), before - static_cast<std::size_t>(found));
@@ -90,7 +90,7 @@ TEST(FuseLandmarks, GivesFreeFeaturesTheirLandmarks) {
   for (const LandmarkId id : seen_by(simulated.map, 1)) simulated.map.remove_landmark(id);
   const std::vector<LandmarkId> known = simulated.map.landmark_ids();
   const int found =
-      fuse_landmarks(simulated.map, KeyframeId(1), known, world.camera(), model(world), kRadius);
+      fuse_landmarks(simulated.map, KeyframeId(1), known, world.camera(), model(world), kFusion);
   EXPECT_GT(found, 0.9 * points_in_both(simulated));
   EXPECT_EQ(simulated.map.landmark_ids(), known);
   EXPECT_EQ(seen_by(simulated.map, 1).size(), static_cast<std::size_t>(found));
@@ -106,7 +106,7 @@ TEST(FuseLandmarks, KeepsTheOneThatMoreKeyframesSee) {
                    seen_by(simulated.map, of),
                    world.camera(),
                    model(world),
-                   kRadius);
+                   kFusion);
   };
   fuse_into(1, 0);
   const std::vector<LandmarkId> shared = seen_by(simulated.map, 1);
@@ -131,7 +131,7 @@ TEST(FuseLandmarks, DoesNotMergeNeighborsThatLookAlike) {
                                    seen_by(simulated.map, 0),
                                    world.camera(),
                                    model(world),
-                                   kRadius);
+                                   kFusion);
   EXPECT_GT(found, 0.85 * points_in_both(simulated));
   int mixed = 0;
   for (const LandmarkId id : simulated.map.landmark_ids()) {
@@ -157,7 +157,7 @@ TEST(FuseLandmarks, LeavesWhatItsProjectionContradicts) {
                                    seen_by(simulated.map, 0),
                                    world.camera(),
                                    model(world),
-                                   kRadius);
+                                   kFusion);
   EXPECT_EQ(found, 0);
 }
 
@@ -171,12 +171,12 @@ TEST(FuseLandmarks, LeavesFeaturesOfLandmarksOutsideTheWindow) {
                  std::vector(1, seen_by(simulated.map, 0)[150]),
                  world.camera(),
                  model(world),
-                 kRadius);
+                 kFusion);
   Map window = simulated.map.window(std::vector{KeyframeId(0)});
   ASSERT_TRUE(window.has(KeyframeId(1)));
   const std::vector<LandmarkId> before = window.keyframe(KeyframeId(1)).landmarks;
   const int found = fuse_landmarks(
-      window, KeyframeId(1), seen_by(window, 0), world.camera(), model(world), kRadius);
+      window, KeyframeId(1), seen_by(window, 0), world.camera(), model(world), kFusion);
   EXPECT_EQ(found, 0);
   EXPECT_EQ(window.keyframe(KeyframeId(1)).landmarks, before);
 }

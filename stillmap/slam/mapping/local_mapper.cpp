@@ -25,14 +25,14 @@ void fuse_with_neighbors(Map& map,
                          const std::vector<KeyframeId>& core,
                          const CameraModel& camera,
                          const MeasurementModel& measure,
-                         double radius_px) {
+                         const LandmarkFusionConfig& config) {
   const KeyframeId newest = core.front();
   const std::span<const KeyframeId> neighbors = std::span(core).subspan(1);
   for (const KeyframeId neighbor : neighbors) {
     const std::vector<LandmarkId> own = landmarks_of(map, std::span(&newest, 1));
-    fuse_landmarks(map, neighbor, own, camera, measure, radius_px);
+    fuse_landmarks(map, neighbor, own, camera, measure, config);
   }
-  fuse_landmarks(map, newest, landmarks_of(map, neighbors), camera, measure, radius_px);
+  fuse_landmarks(map, newest, landmarks_of(map, neighbors), camera, measure, config);
   for (const LandmarkId id : landmarks_of(map, std::span(&newest, 1))) {
     if (map.find(id) != nullptr) map.refresh(id);
   }
@@ -59,7 +59,7 @@ MapUpdate map_locally(Map window,
   const KeyframeId newest = core.front();
   cull_young_landmarks(window, newest, config.culling);
   triangulate_landmarks(window, newest, camera, measure, config.creation);
-  fuse_with_neighbors(window, core, camera, measure, config.fusion_radius_px);
+  fuse_with_neighbors(window, core, camera, measure, config.fusion);
   adjust_map(window, core, camera, measure, config.bundle);
   cull_redundant_keyframes(window, core, newest, measure, config.culling);
   return window.take_changes();

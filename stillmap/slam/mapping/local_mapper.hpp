@@ -6,6 +6,7 @@
 #include "stillmap/slam/map/map.hpp"
 #include "stillmap/slam/mapping/culling.hpp"
 #include "stillmap/slam/mapping/landmark_creation.hpp"
+#include "stillmap/slam/mapping/landmark_fusion.hpp"
 #include "stillmap/slam/optim/bundle_adjuster.hpp"
 #include "stillmap/slam/optim/measurement_model.hpp"
 
@@ -14,7 +15,7 @@ namespace stillmap {
 struct MappingConfig {
   int lag_frames = 6;
   int window_keyframes = 20;
-  double fusion_radius_px = 6;
+  LandmarkFusionConfig fusion;
   LandmarkCreationConfig creation;
   CullingConfig culling;
   BundleConfig bundle;
@@ -31,10 +32,7 @@ struct MappingConfig {
     visit("window_keyframes",
           self.window_keyframes,
           FieldInfo{"key frames that local bundle adjustment moves", "", 2, 200});
-    visit("fusion_radius_px",
-          self.fusion_radius_px,
-          FieldInfo{
-              "search for a landmark in another key frame, on the finest level", "px", 0.5, 50});
+    LandmarkFusionConfig::fields(self.fusion, visit);
     visit.group("creation", self.creation);
     visit.group("culling", self.culling);
     visit.group("bundle", self.bundle);

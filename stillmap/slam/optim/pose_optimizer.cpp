@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Cholesky>
+#include "stillmap/slam/optim/symmetric_solver.hpp"
 
 namespace stillmap {
 namespace {
@@ -79,7 +79,7 @@ Eigen::Isometry3d minimize(const CameraModel& camera,
     Matrix6d H = eq.H;
     H.diagonal() += damping * eq.H.diagonal();
     H.diagonal().array() += 1e-9;  // keeps an undetermined direction where it is
-    const Vector6d step = H.ldlt().solve(-eq.g);
+    const Vector6d step = solve_symmetric(H, -eq.g);
     if (!step.allFinite()) break;
     const Eigen::Isometry3d candidate = perturb_left(T, step);
     const double cost = total_cost(camera, candidate, observations, inlier, robust);

@@ -5,8 +5,8 @@
 #include <unordered_set>
 
 #include "stillmap/core/random.hpp"
+#include "stillmap/geometry/ransac.hpp"
 #include "stillmap/geometry/rigid_alignment.hpp"
-#include "stillmap/slam/features/matcher.hpp"
 #include "stillmap/slam/map/covisibility.hpp"
 #include "stillmap/slam/map/landmark_projection.hpp"
 #include "stillmap/slam/optim/three_points.hpp"
@@ -41,10 +41,8 @@ Relocalizer::Match Relocalizer::make_match(const Features& features,
 Relocalizer::Matches Relocalizer::match(const Features& features,
                                         const Keyframe& keyframe,
                                         const Map& map) const {
-  const std::vector<FeatureMatch> by_appearance = match_all(*keyframe.features,
-                                                            features_with_landmark(keyframe),
-                                                            features,
-                                                            {.max_distance = 60, .max_ratio = 0.8});
+  const std::vector<FeatureMatch> by_appearance = match_all(
+      *keyframe.features, features_with_landmark(keyframe), features, config_.appearance_match);
   Matches matches;
   for (const FeatureMatch& m :
        keep_consistent_rotations(by_appearance, keyframe.features->angle_deg, features.angle_deg)) {
@@ -76,24 +74,23 @@ std::optional<Eigen::Isometry3d> Relocalizer::sample_pose(FrameId frame,
   const auto count = static_cast<std::uint32_t>(with_depth.size());
   const Eigen::Isometry3d T_keyframe_world = keyframe.T_world_camera.inverse();
   std::mt19937 rng = rng_for(seed_, frame, RandomPurpose::kAbsolutePose);
-  std::optional<Eigen::Isometry3d> best;
-  auto best_support = static_cast<std::size_t>(config_.min_matches - 1);
-  for (int iteration = 0; iteration < config_.iterations; ++iteration) {
+  const auto pose_of_three = [&]() -> std::optional<Eigen::Isometry3d> {
+    const Sample<3> sample = draw_with_replacement<3>(rng, count);
     PointTriple then, now;  // as the key frame and the frame see them
     for (std::size_t i = 0; i < 3; ++i) {
-      const Match& pick = matches[with_depth[draw_index(rng, count)]];
+      const Match& pick = matches[with_depth[sample[i]]];
       then[i] = T_keyframe_world * pick.observation.p_world;
       now[i] = camera_.unproject(features.px[pick.feature].cast<double>(),
                                  static_cast<double>(features.depth_m[pick.feature]));
     }
-    if (!same_shape(then, now)) continue;
-    const Eigen::Isometry3d T_camera_world = align_rigid(then, now) * T_keyframe_world;
-    const std::size_t support = agreeing(matches, T_camera_world).size();
-    if (support <= best_support) continue;
-    best_support = support;
-    best = T_camera_world;
-  }
-  return best;
+    if (!same_shape(then, now)) return std::nullopt;
+    return align_rigid(then, now) * T_keyframe_world;
+  };
+  const auto best = ransac(config_.iterations,
+                           static_cast<std::size_t>(config_.min_matches - 1),
+                           pose_of_three,
+                           [&](const Eigen::Isometry3d& T) { return agreeing(matches, T).size(); });
+  return best ? std::optional(best->model) : std::nullopt;
 }
 
 // Those of the key frame first, then of its neighbours.
@@ -130,8 +127,7 @@ Relocalizer::Matches Relocalizer::search(const Features& features,
     projections.push_back(*projection);
   }
   Matches matches;
-  for (const FeatureMatch& m :
-       match_projections(projections, features, {}, {.max_distance = 64, .max_ratio = 0.9})) {
+  for (const FeatureMatch& m : match_projections(projections, features, {}, config_.search_match)) {
     matches.push_back(make_match(features, m.feature, projected[m.query], map));
   }
   return matches;

@@ -7,6 +7,7 @@
 
 #include "stillmap/core/fields.hpp"
 #include "stillmap/geometry/camera.hpp"
+#include "stillmap/slam/features/matcher.hpp"
 #include "stillmap/slam/map/map.hpp"
 #include "stillmap/slam/map/place_index.hpp"
 #include "stillmap/slam/optim/measurement_model.hpp"
@@ -23,6 +24,8 @@ struct RelocalizerConfig {
   int min_inliers = 50;
   double min_share = 0.5;
   int new_world_after_frames = 60;
+  MatchRules appearance_match{.max_distance = 60, .max_ratio = 0.8};
+  MatchRules search_match{.max_distance = 64, .max_ratio = 0.9};
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -50,6 +53,8 @@ struct RelocalizerConfig {
                     "frames",
                     1,
                     1000000000});
+    visit.group("appearance_match", self.appearance_match);
+    visit.group("search_match", self.search_match);
   }
 };
 

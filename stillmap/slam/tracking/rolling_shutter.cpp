@@ -3,9 +3,8 @@
 
 #include <algorithm>
 
-#include <Eigen/Cholesky>
-
 #include "stillmap/geometry/se3.hpp"
+#include "stillmap/slam/optim/symmetric_solver.hpp"
 
 namespace stillmap {
 namespace {
@@ -80,7 +79,7 @@ void ReadoutEstimator::update(const Eigen::Isometry3d& T_camera_world,
     gradient += j.dot(r);
   }
   H.diagonal().array() += 1e-9;
-  const Vector6d eliminated = H.ldlt().solve(cross);
+  const Vector6d eliminated = solve_symmetric(H, cross);
   information -= cross.dot(eliminated);
   gradient -= g.dot(eliminated);
   // What was learnt in motion is not forgotten while the camera stands: the little "motion" that

@@ -4,17 +4,10 @@
 #include <algorithm>
 #include <unordered_set>
 
-#include "stillmap/slam/features/matcher.hpp"
 #include "stillmap/slam/map/covisibility.hpp"
 #include "stillmap/slam/map/landmark_projection.hpp"
 
 namespace stillmap {
-namespace {
-
-constexpr int kMinFrameMatches = 20;
-constexpr std::size_t kMinFrameInliers = 10;
-
-}  // namespace
 
 Tracker::Tracker(const TrackerConfig& config,
                  const RelocalizerConfig& relocalizer,
@@ -193,7 +186,7 @@ Tracker::Matches Tracker::match_last_frame(const Features& features,
     angles.push_back(last.angle_deg[i]);
   }
   const std::vector<FeatureMatch> found =
-      match_projections(projections, features, {}, {.max_distance = 90});
+      match_projections(projections, features, {}, config_.frame_match);
   Matches matches;
   for (const FeatureMatch& match : keep_consistent_rotations(found, angles, features.angle_deg)) {
     Match point = points[match.query];
@@ -208,12 +201,12 @@ std::optional<Tracker::PoseFromMatches> Tracker::track_last_frame(const TrackedF
                                                                   const Map& map) const {
   const Eigen::Isometry3d T_camera_world = expected_pose(frame.stamp_s, map)->inverse();
   Matches matches = match_last_frame(features, map, T_camera_world, config_.frame_search_radius_px);
-  if (std::ssize(matches) < kMinFrameMatches) {
+  if (std::ssize(matches) < config_.min_frame_matches) {
     matches = match_last_frame(features, map, T_camera_world, 2 * config_.frame_search_radius_px);
   }
-  if (std::ssize(matches) < kMinFrameMatches) return std::nullopt;
+  if (std::ssize(matches) < config_.min_frame_matches) return std::nullopt;
   PoseFromMatches pose = optimize(features, T_camera_world, matches);
-  if (pose.inliers.size() < kMinFrameInliers) return std::nullopt;
+  if (std::ssize(pose.inliers) < config_.min_frame_inliers) return std::nullopt;
   return pose;
 }
 
@@ -221,19 +214,17 @@ std::optional<Tracker::PoseFromMatches> Tracker::track_reference(const TrackedFr
                                                                  const Features& features,
                                                                  const Map& map) const {
   const Keyframe& reference = map.keyframe(map.anchor(frame.reference).keyframe);
-  const std::vector<FeatureMatch> found = match_all(*reference.features,
-                                                    features_with_landmark(reference),
-                                                    features,
-                                                    {.max_distance = 60, .max_ratio = 0.7});
+  const std::vector<FeatureMatch> found = match_all(
+      *reference.features, features_with_landmark(reference), features, config_.reference_match);
   Matches matches;
   for (const FeatureMatch& match :
        keep_consistent_rotations(found, reference.features->angle_deg, features.angle_deg)) {
     const LandmarkId id = reference.landmarks[match.query];
     matches.push_back({match.feature, id, map.landmark(id).p_world});
   }
-  if (std::ssize(matches) < kMinFrameMatches) return std::nullopt;
+  if (std::ssize(matches) < config_.min_frame_matches) return std::nullopt;
   PoseFromMatches pose = optimize(features, last_pose(map).inverse(), matches);
-  if (pose.inliers.size() < kMinFrameInliers) return std::nullopt;
+  if (std::ssize(pose.inliers) < config_.min_frame_inliers) return std::nullopt;
   return pose;
 }
 
@@ -293,7 +284,7 @@ Tracker::PoseFromMatches Tracker::track_local_map(TrackedFrame& frame,
     frame.expected.push_back(id);
   }
   for (const FeatureMatch& match :
-       match_projections(projections, features, taken, {.max_distance = 90, .max_ratio = 0.8})) {
+       match_projections(projections, features, taken, config_.map_match)) {
     const LandmarkId id = projected[match.query];
     matches.push_back({match.feature, id, map.landmark(id).p_world});
   }

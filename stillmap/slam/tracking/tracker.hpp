@@ -7,6 +7,7 @@
 #include "stillmap/core/rgbd_frame.hpp"
 #include "stillmap/geometry/camera.hpp"
 #include "stillmap/slam/features/features.hpp"
+#include "stillmap/slam/features/matcher.hpp"
 #include "stillmap/slam/map/map.hpp"
 #include "stillmap/slam/optim/measurement_model.hpp"
 #include "stillmap/slam/optim/pose_optimizer.hpp"
@@ -21,7 +22,12 @@ struct TrackerConfig {
   double frame_search_radius_px = 15;
   double map_search_radius_px = 8;
   int local_keyframes = 30;
+  int min_frame_matches = 20;
+  int min_frame_inliers = 10;
   int min_inliers = 30;
+  MatchRules frame_match{.max_distance = 90};
+  MatchRules reference_match{.max_distance = 60, .max_ratio = 0.7};
+  MatchRules map_match{.max_distance = 90, .max_ratio = 0.8};
   ShutterConfig shutter;
 
   template <class Self, class Visitor>
@@ -35,6 +41,19 @@ struct TrackerConfig {
     visit("local_keyframes",
           self.local_keyframes,
           FieldInfo{"key frames whose landmarks are searched in a frame", "", 1, 1000});
+    visit("min_frame_matches",
+          self.min_frame_matches,
+          FieldInfo{"matches with the last frame, or else with the reference key frame, from which "
+                    "a pose is sought",
+                    "",
+                    3,
+                    1000});
+    visit("min_frame_inliers",
+          self.min_frame_inliers,
+          FieldInfo{"of these matches that must agree with the pose", "", 3, 1000});
+    visit.group("frame_match", self.frame_match);
+    visit.group("reference_match", self.reference_match);
+    visit.group("map_match", self.map_match);
     visit.group("shutter", self.shutter);
     visit("min_inliers",
           self.min_inliers,
