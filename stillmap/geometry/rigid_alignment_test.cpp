@@ -50,6 +50,27 @@ TEST(AlignRigid, NoSmallStepBeatsItOnNoisyPoints) {
   }
 }
 
+// One point, two, and points on a line or on a plane: some rotations are as good as others, and one
+// of them is returned.
+TEST(AlignRigid, FindsOneOfTheBestWhereARotationIsUndetermined) {
+  const Eigen::Isometry3d T = make_pose(so3_exp({0.4, -1.2, 2.0}), {1, 2, -3});
+  const Eigen::Vector3d at(0.3, -2, 1), along(1, 2, -1), across(0, 1, 2);
+  const std::vector<std::vector<Eigen::Vector3d>> sets = {
+      {at},
+      {at, at},
+      {at, at + along},
+      {at, at + along, at - 3 * along, at + 0.1 * along},
+      {at, at + along, at + across, at - along + 2 * across}};
+  for (const std::vector<Eigen::Vector3d>& source : sets) {
+    std::vector<Eigen::Vector3d> target;
+    for (const auto& p : source) target.push_back(T * p);
+    const Eigen::Isometry3d best = align_rigid(source, target);
+    EXPECT_LT(cost(best, source, target), 1e-24) << source.size();
+    EXPECT_NEAR(best.linear().determinant(), 1.0, 1e-12) << source.size();
+    EXPECT_TRUE((best.linear().transpose() * best.linear()).isIdentity(1e-12)) << source.size();
+  }
+}
+
 TEST(AlignRigid, NeverReflects) {
   auto source = random_points(10, 4);
   auto target = source;
