@@ -28,7 +28,8 @@ std::vector<FeatureMatch> match_consecutive(
     const Features& current,
     const CameraModel& camera,
     const std::optional<Eigen::Isometry3d>& T_current_previous,
-    double radius_px) {
+    double radius_px,
+    const MatchRules& rules) {
   const Eigen::Isometry3d T = T_current_previous.value_or(Eigen::Isometry3d::Identity());
   std::vector<Projection> projections;
   std::vector<std::uint32_t> queries;
@@ -46,8 +47,7 @@ std::vector<FeatureMatch> match_consecutive(
                            &previous.descriptors[i]});
     queries.push_back(i);
   }
-  std::vector<FeatureMatch> matches =
-      match_projections(projections, current, {}, {.max_distance = 60, .max_ratio = 0.9});
+  std::vector<FeatureMatch> matches = match_projections(projections, current, {}, rules);
   for (FeatureMatch& match : matches) match.query = queries[match.query];
   return keep_consistent_rotations(matches, previous.angle_deg, current.angle_deg);
 }

@@ -19,6 +19,7 @@ namespace stillmap {
     const Features& current,
     const CameraModel& camera,
     const std::optional<Eigen::Isometry3d>& T_current_previous,
-    double radius_px);
+    double radius_px,
+    const MatchRules& rules);
 
 }  // namespace stillmap

@@ -122,7 +122,8 @@ std::vector<std::optional<MatchVerdict>> FeatureFilter::judge_boxes(
                                                               scene.features,
                                                               camera_,
                                                               scene.T_current_previous,
-                                                              config_.static_matches.search_px);
+                                                              config_.static_matches.search_px,
+                                                              config_.static_matches.match);
   std::vector<PointMatch> environment;
   for (const FeatureMatch& match : matches) {
     if (boxed[match.feature] != 0) continue;

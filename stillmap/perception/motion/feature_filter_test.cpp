@@ -93,16 +93,24 @@ FeatureFilterConfig without_depth_stability() {
 
 TEST(MatchConsecutive, FindsEveryPointOnceWhetherItMovesOrNot) {
   const TwoFrames two = two_frames();
-  const std::vector<FeatureMatch> matches =
-      match_consecutive(two.previous, two.current, two.camera, two.T_current_previous, 25);
+  const std::vector<FeatureMatch> matches = match_consecutive(two.previous,
+                                                              two.current,
+                                                              two.camera,
+                                                              two.T_current_previous,
+                                                              25,
+                                                              StaticMatchesConfig{}.match);
   EXPECT_EQ(matches.size(), two.current.size());
   for (const FeatureMatch& match : matches) EXPECT_EQ(match.query, match.feature);
 }
 
 TEST(MatchConsecutive, SearchesNoFartherThanTold) {
   const TwoFrames two = two_frames();
-  const std::vector<FeatureMatch> matches =
-      match_consecutive(two.previous, two.current, two.camera, two.T_current_previous, 2);
+  const std::vector<FeatureMatch> matches = match_consecutive(two.previous,
+                                                              two.current,
+                                                              two.camera,
+                                                              two.T_current_previous,
+                                                              2,
+                                                              StaticMatchesConfig{}.match);
   // What stands is where it should be; what moves goes at least 0.05 m * 525 / 3.5 m = 7 pixels.
   EXPECT_EQ(matches.size(), static_cast<std::size_t>(kRoomFeatures + kBoxFeatures / 2));
 }

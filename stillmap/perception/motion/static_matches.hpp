@@ -11,6 +11,7 @@
 #include "stillmap/core/fields.hpp"
 #include "stillmap/geometry/camera.hpp"
 #include "stillmap/geometry/point_match.hpp"
+#include "stillmap/slam/features/matcher.hpp"
 
 namespace stillmap {
 
@@ -25,6 +26,8 @@ struct StaticMatchesConfig {
   int iterations = 200;
   double search_px = 20;
   bool in_full = false;
+  double inlier_px = 1.0;
+  MatchRules match{.max_distance = 60, .max_ratio = 0.9};
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -53,6 +56,13 @@ struct StaticMatchesConfig {
     visit("search_px",
           self.search_px,
           FieldInfo{"how far a feature may be from where it would stand still", "px", 1, 200});
+    visit("inlier_px",
+          self.inlier_px,
+          FieldInfo{"a match of the environment nearer to its epipolar line agrees with it",
+                    "px",
+                    0.01,
+                    50});
+    visit.group("match", self.match);
   }
 };
 

@@ -8,7 +8,7 @@
 
 #include "stillmap/core/random.hpp"
 #include "stillmap/geometry/epipolar.hpp"
-#include "stillmap/geometry/relative_motion.hpp"
+#include "stillmap/geometry/ray_rotation.hpp"
 #include "stillmap/geometry/se3.hpp"
 
 namespace stillmap {
@@ -117,18 +117,16 @@ TEST(Epipolar, RansacLeavesOutTheWrongThirdAndIsRepeatable) {
   EXPECT_EQ(found->F, estimate_fundamental(room, 1.0, 500, again)->F);
 }
 
-TEST(RelativeMotion, FindsTheMotionAmongWrongMatches) {
+TEST(StaticMatches, FindTheMotionAmongWrongMatches) {
   TwoViews views(kSideways);
-  const auto T =
-      relative_motion(views.camera, views.room(200, 60), Eigen::Isometry3d::Identity(), 20);
+  const std::optional<Eigen::Isometry3d> T = views.geometry(views.room(200, 60)).T;
   ASSERT_TRUE(T);
   EXPECT_LT((T->translation() - kSideways.translation()).norm(), 0.001);
   EXPECT_LT(rotation_angle(T->linear().transpose() * kSideways.linear()), 0.0005);
-  EXPECT_FALSE(relative_motion(
-      views.camera, without_depth(views.room(50)), Eigen::Isometry3d::Identity(), 20));
+  EXPECT_FALSE(views.geometry(without_depth(views.room(50))).T);
 }
 
-TEST(RelativeMotion, RayRotationIsTheTurn) {
+TEST(RayRotation, IsTheTurn) {
   TwoViews views(kTurn);
   const Eigen::Matrix3d R = ray_rotation(views.camera, views.room(100, 20));
   EXPECT_LT(rotation_angle(R.transpose() * kTurn.linear()), 0.0005);
