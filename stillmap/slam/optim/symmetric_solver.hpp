@@ -14,8 +14,9 @@ namespace stillmap {
 /// read.
 [[nodiscard]] Vector6d solve_symmetric(const Matrix6d& H, const Vector6d& b);
 
-/// The inverse of a symmetric matrix, of which the lower triangle is read: the covariance that the
-/// information `H` leaves. Nothing where its reciprocal condition number is below `min_rcond`.
+/// The inverse of a positive definite matrix, of which the lower triangle is read: the covariance
+/// that the information `H` leaves. Nothing where `H` is not positive definite or its reciprocal
+/// condition number is below `min_rcond`.
 [[nodiscard]] std::optional<Matrix6d> inverse_of_symmetric(const Matrix6d& H, double min_rcond);
 
 }  // namespace stillmap
