@@ -10,7 +10,7 @@ using Eigen::Vector3d;
 
 // A place in a model in centimetres: to the person's left, up from the floor, to the front, from
 // the middle of the model's extent.
-struct Place {
+struct BodyPlace {
   double left;
   double up;
   double front;
@@ -18,9 +18,9 @@ struct Place {
 
 // The joints of both sides, from the trunk outwards.
 struct LimbPlaces {
-  Place root;
-  Place middle;
-  Place end;
+  BodyPlace root;
+  BodyPlace middle;
+  BodyPlace end;
 };
 
 // Where the joints of a model are, measured in slices of it at the heights that a human of that
@@ -28,7 +28,7 @@ struct LimbPlaces {
 struct FittedModel {
   std::string_view name;
   double height_m;  // that it is made; some models are of youths
-  Place spine, chest, neck, head;
+  BodyPlace spine, chest, neck, head;
   LimbPlaces left_arm, right_arm, left_leg, right_leg;
 };
 
@@ -76,7 +76,7 @@ constexpr std::array<FittedModel, 4> kPeople{{
 }};
 
 // In metres, x to the front, y left, z up.
-Vector3d in_metres(const Place& place) {
+Vector3d in_metres(const BodyPlace& place) {
   return Vector3d(place.front, place.left, place.up) / 100.0;
 }
 
@@ -89,7 +89,7 @@ Vector3d pelvis_of(const FittedModel& model) {
 Skeleton skeleton_of(const FittedModel& model, double scale) {
   Skeleton skeleton;
   const Vector3d pelvis = pelvis_of(model);
-  const auto put = [&](Joint joint, int by, const Place& place) {
+  const auto put = [&](Joint joint, int by, const BodyPlace& place) {
     skeleton.positions[static_cast<std::size_t>(joint) + static_cast<std::size_t>(by)] =
         scale * (in_metres(place) - pelvis);
   };

@@ -5,11 +5,11 @@
 namespace stillmap {
 namespace {
 
-constexpr std::size_t kMinusX = 1;
+constexpr std::size_t kFrontFace = 1;  // the one towards -x
 
 BoxSurfaces front(const Surface& all, const Surface& front) {
   BoxSurfaces surfaces = all_faces(all);
-  surfaces[kMinusX] = front;
+  surfaces[kFrontFace] = front;
   return surfaces;
 }
 

@@ -68,9 +68,9 @@ std::array<Wrap, kPersonCharts> wraps_of(const Skeleton& skeleton) {
 }
 
 // Everything that says how a person's triangles are painted.
-class Painter {
+class PersonPainter {
  public:
-  Painter(const PersonLook& look, const PersonMaterials& ids)
+  PersonPainter(const PersonLook& look, const PersonMaterials& ids)
       : scale_(static_cast<float>(look.height_m / 1.75)),
         floor_(-static_cast<float>(rest_pelvis_height(look))),
         ids_(ids),
@@ -122,7 +122,7 @@ class Painter {
 
 // Gives each triangle its material, and each corner a place on its picture; a corner between two
 // pictures, or at a seam, becomes two.
-Mesh painted(const FleshSurface& surface, const Flesh& flesh, const Painter& painter) {
+Mesh painted(const FleshSurface& surface, const Flesh& flesh, const PersonPainter& painter) {
   using Key = std::tuple<std::uint32_t, MaterialId, std::uint8_t, bool>;
   std::map<Key, std::uint32_t> corners;
   Mesh mesh;
@@ -169,7 +169,7 @@ Body make_person(const PersonLook& look, MaterialLibrary& materials) {
                                           scale * (-half - Vector3f(0, 0, 1.00F)),
                                           scale * (half + Vector3f(0, 0, 0.86F)),
                                           kCell_m);
-  const Painter painter(look, add_materials(look, materials));
+  const PersonPainter painter(look, add_materials(look, materials));
   return Body(painted(surface, flesh, painter), person_skeleton(look));
 }
 

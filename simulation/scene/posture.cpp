@@ -60,14 +60,14 @@ Matrix3d bone_axes(const Vector3d& along, const Vector3d& hinge) {
 }
 
 // A limb's bones bent so that its end is at `target`: where the two bones point, in world axes.
-struct Bend {
+struct JointBend {
   Vector3d upper;
   Vector3d lower;
   Vector3d hinge;
 };
 
 // `pole`: where the joint in the middle points.
-Bend bend_to(const Vector3d& from,
+JointBend bend_to(const Vector3d& from,
              const Vector3d& target,
              double upper,
              double lower,
@@ -86,7 +86,7 @@ Bend bend_to(const Vector3d& from,
 BodyPose with_bend(const Body& body,
                    BodyPose pose,
                    const Limb& limb,
-                   const Bend& bend,
+                   const JointBend& bend,
                    const Vector3d& rest_pole) {
   const std::array<Isometry3d, kJoints> joints = body.T_world_joints(pose);
   const auto& rest = body.skeleton().positions;
@@ -147,7 +147,7 @@ BodyPose with_leg(const Body& body,
   const auto& rest = body.skeleton().positions;
   const std::array<Isometry3d, kJoints> joints = body.T_world_joints(pose);
   const Vector3d forward = pose.T_world_pelvis.linear().col(0) + T_world_ankle.linear().col(0);
-  const Bend bend = bend_to(joints[index(limb.root)].translation(),
+  const JointBend bend = bend_to(joints[index(limb.root)].translation(),
                             T_world_ankle.translation(),
                             (rest[index(limb.middle)] - rest[index(limb.root)]).norm(),
                             (rest[index(limb.end)] - rest[index(limb.middle)]).norm(),
@@ -166,7 +166,7 @@ BodyPose with_arm(const Body& body, const BodyPose& pose, BodySide side, const P
   const double y = side == BodySide::kLeft ? 1.0 : -1.0;
   const Vector3d back = joints[index(limb.parent)].linear() * Vector3d(-0.6, 0.45 * y, -0.35);
   const Vector3d palm = rest_palm(body.skeleton(), limb);
-  const Bend bend = bend_to(joints[index(limb.root)].translation(),
+  const JointBend bend = bend_to(joints[index(limb.root)].translation(),
                             goal.p_world,
                             (rest[index(limb.middle)] - rest[index(limb.root)]).norm(),
                             (palm - rest[index(limb.middle)]).norm(),
