@@ -92,7 +92,8 @@ void make_range_image(benchmark::State& state) {
   cv::Mat1b moving(frame.depth.mat.size(), std::uint8_t{0});
   moving(cv::Rect(100, 100, 80, 300)).setTo(1);
   for (auto _ : state) {
-    benchmark::DoNotOptimize(range_image(frame.depth.mat, {Mask(moving), Mask(moving)}, {}).cells.data());
+    benchmark::DoNotOptimize(
+        range_image(frame.depth.mat, {Mask(moving), Mask(moving)}, {}).cells.data());
   }
 }
 BENCHMARK(make_range_image)->Unit(benchmark::kMillisecond);

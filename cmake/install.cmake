@@ -1,7 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-# What `cmake --install` adds to the libraries, headers and program: a CMake package, so that
-# find_package(stillmap) gives stillmap::stillmap (everything) and stillmap::NAME (one module).
+# What `cmake --install` adds to the libraries and the program: the public headers and a CMake
+# package, so that find_package(stillmap) gives stillmap::stillmap.
 include(CMakePackageConfigHelpers)
+foreach(header IN LISTS stillmap_public_headers)
+  cmake_path(GET header PARENT_PATH folder)
+  install(FILES ${PROJECT_SOURCE_DIR}/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${folder})
+endforeach()
 set(stillmap_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/stillmap)
 
 install(EXPORT stillmap NAMESPACE stillmap:: FILE stillmap-targets.cmake

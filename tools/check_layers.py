@@ -28,6 +28,7 @@ TOPS = {
     "simulation": {"stillmap", "simulation"},
     "apps": {"stillmap", "tooling", "simulation", "apps"},
     "tests": {"stillmap", "tooling", "simulation", "tests"},
+    "examples": {"stillmap", "examples"},
     "bench": {"stillmap", "tooling", "simulation", "tests", "bench"},
     "fuzz": {"stillmap", "tests", "fuzz"},
 }

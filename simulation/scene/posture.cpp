@@ -68,10 +68,10 @@ struct JointBend {
 
 // `pole`: where the joint in the middle points.
 JointBend bend_to(const Vector3d& from,
-             const Vector3d& target,
-             double upper,
-             double lower,
-             const Vector3d& pole) {
+                  const Vector3d& target,
+                  double upper,
+                  double lower,
+                  const Vector3d& pole) {
   const Vector3d along = (target - from).normalized();
   const double reach =
       std::clamp((target - from).norm(), 1.05 * std::abs(upper - lower), 0.9995 * (upper + lower));
@@ -148,10 +148,10 @@ BodyPose with_leg(const Body& body,
   const std::array<Isometry3d, kJoints> joints = body.T_world_joints(pose);
   const Vector3d forward = pose.T_world_pelvis.linear().col(0) + T_world_ankle.linear().col(0);
   const JointBend bend = bend_to(joints[index(limb.root)].translation(),
-                            T_world_ankle.translation(),
-                            (rest[index(limb.middle)] - rest[index(limb.root)]).norm(),
-                            (rest[index(limb.end)] - rest[index(limb.middle)]).norm(),
-                            forward);
+                                 T_world_ankle.translation(),
+                                 (rest[index(limb.middle)] - rest[index(limb.root)]).norm(),
+                                 (rest[index(limb.end)] - rest[index(limb.middle)]).norm(),
+                                 forward);
   BodyPose bent = with_bend(body, pose, limb, bend, Vector3d::UnitX());
   const Matrix3d shin = body.T_world_joints(bent)[index(limb.middle)].linear();
   bent.rotations[index(limb.end)] =
@@ -167,10 +167,10 @@ BodyPose with_arm(const Body& body, const BodyPose& pose, BodySide side, const P
   const Vector3d back = joints[index(limb.parent)].linear() * Vector3d(-0.6, 0.45 * y, -0.35);
   const Vector3d palm = rest_palm(body.skeleton(), limb);
   const JointBend bend = bend_to(joints[index(limb.root)].translation(),
-                            goal.p_world,
-                            (rest[index(limb.middle)] - rest[index(limb.root)]).norm(),
-                            (palm - rest[index(limb.middle)]).norm(),
-                            back);
+                                 goal.p_world,
+                                 (rest[index(limb.middle)] - rest[index(limb.root)]).norm(),
+                                 (palm - rest[index(limb.middle)]).norm(),
+                                 back);
   BodyPose bent = with_bend(body, pose, limb, bend, -Vector3d::UnitX());
   const Vector3d forearm = (rest[index(limb.end)] - rest[index(limb.middle)]).normalized();
   // Half of the turn in the forearm, as its two bones do, half in the wrist.

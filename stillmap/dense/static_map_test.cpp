@@ -78,8 +78,8 @@ TEST(CloudStage, AViewLeavesOutWhatIsExcluded) {
   cv::Mat1b somebody(480, 640, std::uint8_t{0});
   somebody(cv::Rect(195, 95, 90, 210)).setTo(1);
   const CloudConfig config = CloudConfig{}.resolved_for(dynamics_mode("full").cloud);
-  const StaticView view =
-      static_view(wall(camera, true), pixel_rays(camera), config, {Mask(somebody), Mask(somebody)}, {});
+  const StaticView view = static_view(
+      wall(camera, true), pixel_rays(camera), config, {Mask(somebody), Mask(somebody)}, {});
   EXPECT_EQ(near_points(view.cloud), 0U);
   EXPECT_TRUE(view.range.at(100, 120).moving());  // half the resolution: row 200, column 240
   EXPECT_NEAR(view.range.at(100, 120).range_m(), 1.5F, 0.002F);

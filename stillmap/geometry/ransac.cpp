@@ -5,10 +5,7 @@
 
 namespace stillmap {
 
-int ransac_iterations(int inliers,
-                      std::size_t population,
-                      std::size_t sample_size,
-                      int at_most) {
+int ransac_iterations(int inliers, std::size_t population, std::size_t sample_size, int at_most) {
   const double share = static_cast<double>(inliers) / static_cast<double>(population);
   const double good = std::pow(share, static_cast<double>(sample_size));
   if (good >= 1.0) return 1;

@@ -18,7 +18,8 @@ SystemConfig settings_of(const Session& session, const std::string& place) {
 
 PointCloud session_cloud(const Session& session, SubmapId submap, const std::string& place) {
   const SystemConfig settings = settings_of(session, place);
-  const CloudConfig config = settings.cloud.resolved_for(dynamics_mode(settings.dynamics.mode).cloud);
+  const CloudConfig config =
+      settings.cloud.resolved_for(dynamics_mode(settings.dynamics.mode).cloud);
   for (const ViewRecord& record : session.views) {
     if (submap_of(session, session.frames[record.frame]) != submap) continue;
     if (config.free_space == "on" && record.view->range.cells.empty()) {

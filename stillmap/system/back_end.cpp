@@ -151,8 +151,8 @@ PointCloud BackEnd::map_snapshot(std::size_t threads) const {
   return copy.dense_.map_of(posed_views(copy.session_, copy.result_submap()), threads);
 }
 
-PointCloud BackEnd::map_with_poses(
-    std::span<const std::optional<Eigen::Isometry3d>> T_world_frames, std::size_t threads) const {
+PointCloud BackEnd::map_with_poses(std::span<const std::optional<Eigen::Isometry3d>> T_world_frames,
+                                   std::size_t threads) const {
   const SubmapId submap = main_submap(session_, first_frame_);
   std::vector<std::optional<Eigen::Isometry3d>> poses(session_.frames.size());
   std::size_t given = 0;

@@ -17,8 +17,8 @@ constexpr std::int64_t kLagFrames = 30;
 }  // namespace
 
 DenseStage::DenseStage(const CloudConfig& config,
-                     const CameraModel& camera,
-                     const StageOptions& options)
+                       const CameraModel& camera,
+                       const StageOptions& options)
     : config_(config),
       camera_(camera),
       rays_(pixel_rays(camera)),

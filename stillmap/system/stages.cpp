@@ -190,8 +190,7 @@ void add_features(FrameResult& result,
   for (std::size_t i = 0; i < tracked.landmarks.size(); ++i) {
     const FeatureVerdict verdict =
         features.verdicts.empty() ? FeatureVerdict::kStable : features.verdicts[i];
-    result.features.push_back(
-        {tracked.features->raw_px[i], verdict, tracked.landmarks[i].valid()});
+    result.features.push_back({tracked.features->raw_px[i], verdict, tracked.landmarks[i].valid()});
   }
   for (const RejectedFeature& dropped : features.dropped) {
     result.features.push_back({dropped.raw_px, dropped.verdict, false});

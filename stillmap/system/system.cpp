@@ -21,7 +21,9 @@ PreparedFrame System::prepare(FramePtr frame, FrameObjects objects) const {
 }
 
 FrameResult System::process(const RgbdFrame& frame, FrameObjects objects) {
-  return process(std::make_shared<const RgbdFrame>(frame), std::move(objects));
+  const auto copy = std::make_shared<RgbdFrame>(frame);  // of the images' handles
+  if (!copy->id.valid()) copy->id = FrameId(static_cast<std::uint32_t>(stages_->frame_number));
+  return process(copy, std::move(objects));
 }
 
 FrameResult System::process(const FramePtr& frame, FrameObjects objects, MaskOrigin origin) {
@@ -43,8 +45,8 @@ FrameResult System::process(PreparedFrame prepared, MaskOrigin origin) {
   FilteredFeatures features = clock.time("feature filter", [&] {
     return s.dynamics->filter(frame, std::move(extracted), dynamics, expected);
   });
-  TrackedFrame tracked = clock.time(
-      "tracking", [&] { return s.track(frame, std::move(features.features), origin); });
+  TrackedFrame tracked =
+      clock.time("tracking", [&] { return s.track(frame, std::move(features.features), origin); });
   const double pose_ms = clock.total_ms();
   const bool is_keyframe =
       clock.time("keyframe", [&] { return s.insert_if_keyframe(frame, tracked, origin); });

@@ -30,7 +30,7 @@ struct SystemOptions {
   /// Observers are given the dense map so far whenever that many frames have been processed;
   /// 0: at the end alone.
   std::int64_t snapshot_every_frames = 0;
-  std::vector<Observer*> observers = {};    ///< not owned; they outlive the System
+  std::vector<Observer*> observers = {};  ///< not owned; they outlive the System
   std::function<void(Stage)> probe = {};  ///< concurrency/stage_probe.hpp; of tests
 };
 
@@ -52,8 +52,8 @@ class System {
   System& operator=(const System&) = delete;
 
   /// Tracks a frame of the camera's size. `objects` are those that a network has found in it
-  /// (ObjectFinder gives them). Only with objects of its own may a frame become a key frame, begin a
-  /// map or be seen in the dense map.
+  /// (ObjectFinder gives them). Only with objects of its own may a frame become a key frame, begin
+  /// a map or be seen in the dense map.
   FrameResult process(const RgbdFrame& frame, FrameObjects objects = {});
   FrameResult process(const FramePtr& frame,
                       FrameObjects objects = {},

@@ -87,8 +87,7 @@ TEST(System, GivesTheSameBitsWithAnyNumberOfThreads) {
     for (std::uint32_t k = 0; k < kFrames; ++k) {
       EXPECT_EQ(one.frames[k].is_keyframe, other->frames[k].is_keyframe);
       EXPECT_EQ(one.frames[k].tracked_features, other->frames[k].tracked_features);
-      EXPECT_EQ(one.frames[k].T_world_camera.matrix(),
-                other->frames[k].T_world_camera.matrix());
+      EXPECT_EQ(one.frames[k].T_world_camera.matrix(), other->frames[k].T_world_camera.matrix());
     }
   }
 }

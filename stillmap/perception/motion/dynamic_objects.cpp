@@ -29,9 +29,9 @@ StateReason reason_of(Contact contact) {
 
 /// The mask with the dynamic objects alone.
 ObjectMask dynamic_pixels(const FrameObjects& objects,
-                         const MaskAreas& areas,
-                         const std::vector<ObjectState>& states,
-                         cv::Size image) {
+                          const MaskAreas& areas,
+                          const std::vector<ObjectState>& states,
+                          cv::Size image) {
   cv::Mat1b result(image, std::uint8_t{0});
   for (std::size_t i = 0; i < states.size(); ++i) {
     if (!states[i].dynamic) continue;
@@ -100,9 +100,9 @@ DynamicsResult DynamicObjects::judge(const DepthImage& depth,
   HalfDepth expected, known_static;
   if (mode_.jumps == JumpRule::kWarpedFrames && !previous.empty()) {
     for (const PreviousDepth& earlier : previous) {
-      expected = filled_from(
-          std::move(expected),
-          warper_.warp(earlier.depth, earlier.T_current_previous, earlier.dynamic));
+      expected =
+          filled_from(std::move(expected),
+                      warper_.warp(earlier.depth, earlier.T_current_previous, earlier.dynamic));
     }
     // Without the dynamic pixels of then, an unchanged surface may just not have moved yet.
     if (!previous.front().dynamic.empty()) known_static = expected;
@@ -162,10 +162,10 @@ ObjectState DynamicObjects::state_by_class(const TrackedObject& object,
 }
 
 ObjectMask DynamicObjects::extended_mask(const DepthImage& depth,
-                                        const FrameObjects& objects,
-                                        const MeasuredObjects& measured,
-                                        const std::vector<ObjectState>& states,
-                                        const HalfDepth& known_static) const {
+                                         const FrameObjects& objects,
+                                         const MeasuredObjects& measured,
+                                         const std::vector<ObjectState>& states,
+                                         const HalfDepth& known_static) const {
   cv::Mat1b extended(depth.mat.size(), std::uint8_t{0});
   for (std::size_t i = 0; i < states.size(); ++i) {
     if (!states[i].dynamic) continue;

@@ -206,10 +206,9 @@ FilteredFeatures DynamicsStage::filter(
   return {std::move(features), {}, {}};
 }
 
-std::vector<ObjectState> DynamicsStage::with_motion(
-    const RgbdFrame& /*frame*/,
-    const Eigen::Isometry3d& /*T_odometry_camera*/,
-    const FrameDynamics& /*dynamics*/) {
+std::vector<ObjectState> DynamicsStage::with_motion(const RgbdFrame& /*frame*/,
+                                                    const Eigen::Isometry3d& /*T_odometry_camera*/,
+                                                    const FrameDynamics& /*dynamics*/) {
   return {};
 }
 
