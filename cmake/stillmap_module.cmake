@@ -34,7 +34,9 @@ function(stillmap_precompiled NAME)
     <set> <span> <string> <string_view> <thread> <utility> <vector>
     <Eigen/Core> <Eigen/Geometry> <fmt/core.h> <opencv2/core/mat.hpp> ${ARGN})
 endfunction()
-# Tests link libraries that are optimised in full; their own files are compiled with less, in less time.
+# Tests link libraries that are optimised in full; their own files need less: an eighth of the time is saved,
+# and GCC 12's false warnings about plain std::string code. Precompiled headers and the files that read them
+# have the same level: GCC goes by the header's.
 set(stillmap_test_optimization $<$<NOT:$<CONFIG:Debug>>:-O1>)
 stillmap_precompiled(stillmap_precompiled_library)
 if(STILLMAP_BUILD_TESTS)
