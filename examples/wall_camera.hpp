@@ -33,9 +33,8 @@ class WallCamera {
   [[nodiscard]] stillmap::RgbdFrame grab() {
     const int k = frame_++;
     const cv::Mat3b color = wall_(cv::Rect(2 * k, 0, 320, 240)).clone();
-    return stillmap::make_frame(k / 30.0,
-                                stillmap::ColorImage(color),
-                                stillmap::DepthImage(cv::Mat1f(240, 320, 1.5F)));
+    return stillmap::make_frame(
+        k / 30.0, stillmap::ColorImage(color), stillmap::DepthImage(cv::Mat1f(240, 320, 1.5F)));
   }
 
  private:

@@ -24,10 +24,9 @@ class Freiburg1Xyz : public testing::Test {
   }
 
   [[nodiscard]] Accuracy measure(const SystemConfig& config, std::size_t stride) const {
-    TumFolder frames(TumSequence::open(folder_, {.camera = builtin_camera("tum_fr1")}));
-    RunOptions options;
-    options.frames.stride = stride;
-    const SequenceRun run = run_sequence(frames, config, options);
+    TumFolder frames(TumSequence::open(folder_, {.camera = builtin_camera("tum_fr1")}),
+                     {.begin = 0, .end = {}, .stride = stride});
+    const SequenceRun run = run_sequence(frames, config, {});
     const auto ate = absolute_trajectory_error(read_trajectory(folder_ / "groundtruth.txt"),
                                                run.result.trajectory);
     return {ate->translation_m.rmse,

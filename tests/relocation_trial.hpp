@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "stillmap/perception/objects/object_tracker.hpp"
+#include "stillmap/session/system_config.hpp"
 #include "stillmap/system/system.hpp"
 
 namespace stillmap {

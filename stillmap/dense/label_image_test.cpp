@@ -5,6 +5,7 @@
 #include <opencv2/core.hpp>
 
 #include "simulation/synth/sequence.hpp"
+#include "stillmap/session/system_config.hpp"
 #include "stillmap/system/system.hpp"
 
 namespace stillmap {

@@ -13,6 +13,7 @@
 #include <opencv2/core.hpp>
 #include <png.h>
 
+#include "stillmap/core/rgbd_frame.hpp"
 #include "stillmap/io/atomic_file.hpp"
 #include "stillmap/io/png_codec.hpp"
 #include "tests/support/files.hpp"

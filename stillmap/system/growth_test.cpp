@@ -6,6 +6,12 @@
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
+#include "stillmap/concurrency/stage_probe.hpp"
+#include "stillmap/perception/objects/object_tracker.hpp"
+#include "stillmap/session/session.hpp"
+#include "stillmap/session/system_config.hpp"
+#include "stillmap/slam/map/map.hpp"
+#include "stillmap/system/prepared_frame.hpp"
 #include "stillmap/system/system.hpp"
 #include "tests/support/rendered_room.hpp"
 #include "tooling/eval/ate.hpp"

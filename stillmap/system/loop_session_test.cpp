@@ -7,10 +7,16 @@
 
 #include <gtest/gtest.h>
 
+#include "stillmap/concurrency/stage_probe.hpp"
 #include "stillmap/config/config_io.hpp"
+#include "stillmap/perception/objects/object_tracker.hpp"
 #include "stillmap/session/merge_sessions.hpp"
+#include "stillmap/session/session.hpp"
 #include "stillmap/session/session_io.hpp"
 #include "stillmap/session/session_map.hpp"
+#include "stillmap/session/system_config.hpp"
+#include "stillmap/slam/map/map.hpp"
+#include "stillmap/system/prepared_frame.hpp"
 #include "stillmap/system/system.hpp"
 #include "tests/support/files.hpp"
 #include "tests/support/rendered_room.hpp"
@@ -118,7 +124,7 @@ TEST(SavedSession, IsTrackedAgainstWithOtherFrames) {
   system.load(before.session);
   std::vector<double> errors_m;
   for (std::uint32_t k = 41; k < 160; k += 2) {
-    const TrackedFrame tracked = system.process(office().frame(k)).tracked;
+    const FrameResult tracked = system.process(office().frame(k));
     ASSERT_TRUE(has_pose(tracked)) << k;
     EXPECT_EQ(tracked.status == TrackingStatus::kRelocalized, k == 41) << k;
     // Where the saved session has the frame before, and the true motion since; nothing is aligned.

@@ -11,8 +11,14 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
+#include "stillmap/concurrency/stage_probe.hpp"
 #include "stillmap/config/config_io.hpp"
 #include "stillmap/geometry/se3.hpp"
+#include "stillmap/perception/objects/object_tracker.hpp"
+#include "stillmap/session/session.hpp"
+#include "stillmap/session/system_config.hpp"
+#include "stillmap/slam/map/map.hpp"
+#include "stillmap/system/prepared_frame.hpp"
 #include "stillmap/system/system.hpp"
 #include "tests/support/feature_images.hpp"
 #include "tests/support/rendered_room.hpp"

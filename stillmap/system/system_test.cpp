@@ -9,6 +9,12 @@
 #include "simulation/synth/detection_faults.hpp"
 #include "simulation/synth/sequence.hpp"
 #include "stillmap/concurrency/prefetcher.hpp"
+#include "stillmap/concurrency/stage_probe.hpp"
+#include "stillmap/perception/objects/object_tracker.hpp"
+#include "stillmap/session/session.hpp"
+#include "stillmap/session/system_config.hpp"
+#include "stillmap/slam/map/map.hpp"
+#include "stillmap/system/prepared_frame.hpp"
 #include "tests/support/rendered_room.hpp"
 #include "tooling/eval/ate.hpp"
 
@@ -121,7 +127,7 @@ TEST(System, MarksDarkFramesAsLostAndFindsBack) {
   const FinishedRun done = run(2, 35, 45);
   for (std::uint32_t k = 0; k < kFrames; ++k) {
     const bool dark = k >= 35 && k < 45;
-    EXPECT_EQ(has_pose(done.frames[k].tracked), !dark) << k;
+    EXPECT_EQ(has_pose(done.frames[k]), !dark) << k;
   }
   EXPECT_EQ(done.frames[45].status, TrackingStatus::kRelocalized);
   EXPECT_EQ(done.result.trajectory.size(), kFrames - 10);

@@ -199,9 +199,9 @@ TEST(ConnectedExtension, WhatIsKnownToStandStillDoesNotJoin) {
   MaskExtensionConfig config;
   config.grow_px = 80;
   EXPECT_EQ(pixels_in(scene.extended(config), scene.arm), scene.arm.area());
-  EXPECT_EQ(pixels_in(scene.extended(config, known), scene.arm), 0);
+  EXPECT_EQ(pixels_in(scene.extended(config, HalfDepth(known)), scene.arm), 0);
   known += 0.1F;  // something else was there
-  EXPECT_EQ(pixels_in(scene.extended(config, known), scene.arm), scene.arm.area());
+  EXPECT_EQ(pixels_in(scene.extended(config, HalfDepth(known)), scene.arm), scene.arm.area());
 }
 
 TEST(ConnectedExtension, ALeakOntoTheWallLeavesTheMaskWhenAsked) {

@@ -11,6 +11,7 @@
 
 #include "stillmap/geometry/se3.hpp"
 #include "stillmap/io/trajectory_io.hpp"
+#include "stillmap/perception/motion/dynamic_objects.hpp"
 #include "stillmap/perception/objects/object_tracker.hpp"
 #include "tests/support/dynamics_frames.hpp"
 #include "tests/support/shared_data.hpp"

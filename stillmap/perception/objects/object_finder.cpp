@@ -26,8 +26,8 @@ ObjectFinder::~ObjectFinder() = default;
 FrameObjects ObjectFinder::find(const RgbdFrame& frame) {
   const FrameId id = frame.id.valid() ? frame.id : FrameId(state_->frames);
   ++state_->frames;
-  std::optional<FrameObjects> objects = state_->tracker.push(
-      {id, state_->network->segment(frame.color, frame.stamp), frame.depth});
+  std::optional<FrameObjects> objects =
+      state_->tracker.push({id, state_->network->segment(frame.color, frame.stamp), frame.depth});
   STILLMAP_CHECK(objects.has_value());  // a causal tracker gives each frame at once
   return *std::move(objects);
 }
