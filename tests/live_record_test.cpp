@@ -68,7 +68,7 @@ TEST(LiveRecord, ThatIsBrokenIsRefusedByLine) {
 // The frames that a replay of the wall gives, or why it ends.
 std::vector<std::uint32_t> replay(const LiveRecord& record) {
   TumFolder wall(wall_sequence(), {.begin = 4, .end = 14});
-  ReplayedStream replayed(wall, record);
+  ReplayedStream replayed(wall, record, "record.jsonl");
   std::vector<std::uint32_t> frames;
   while (const std::optional<StreamedFrame> frame = replayed.next()) {
     frames.push_back(id_of(*frame).value);
@@ -88,12 +88,13 @@ TEST(ReplayedStream, OfAnotherSequenceIsRefused) {
   EXPECT_THAT(error_of([] {
                 (void)replay({{FrameId(6), {}, "1.5"}});
               }),
-              HasSubstr("frame 6 of this sequence has the stamp 100.200000; is it the record of"));
+              HasSubstr("record.jsonl:1: frame 6 of this sequence has the stamp 100.200000; is it "
+                        "the record of"));
   for (const std::uint32_t frame : {3U, 14U}) {
     EXPECT_THAT(error_of([&] {
                   (void)replay({{FrameId(frame), {}}});
                 }),
-                HasSubstr(fmt::format("the record has frame {}, which", frame)));
+                HasSubstr(fmt::format("record.jsonl:1: frame {}, which", frame)));
   }
 }
 

@@ -223,7 +223,10 @@ std::optional<LiveOptions> live_options(const RunArguments& arguments) {
   if (!arguments.live) return std::nullopt;
   LiveOptions live;
   live.speed = arguments.speed;
-  if (!arguments.replay.empty()) live.record = read_live_record(arguments.replay);
+  if (!arguments.replay.empty()) {
+    live.record = read_live_record(arguments.replay);
+    live.record_name = arguments.replay;
+  }
   return live;
 }
 

@@ -11,12 +11,16 @@ std::optional<StreamedFrame> ReplayedStream::next() {
   std::optional<StreamedFrame> frame = stream_.next();
   for (; frame && id_of(*frame) < step.frame; frame = stream_.next()) ++dropped_;
   if (!frame || id_of(*frame) != step.frame) {
-    throw Error("the record has frame {}, which this sequence lacks; is it the record of another?",
+    throw Error("{}:{}: frame {}, which this sequence lacks; is it the record of another?",
+                name_,
+                next_,
                 step.frame.value);
   }
   const std::string& stamp = stamp_of(*frame).text;
   if (!step.stamp.empty() && step.stamp != stamp) {
-    throw Error("frame {} of this sequence has the stamp {}; is it the record of another?",
+    throw Error("{}:{}: frame {} of this sequence has the stamp {}; is it the record of another?",
+                name_,
+                next_,
                 step.frame.value,
                 stamp);
   }

@@ -3,6 +3,8 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
+#include <utility>
 
 #include "stillmap/sensor/frame_stream.hpp"
 #include "tooling/pipeline/live_record.hpp"
@@ -13,9 +15,9 @@ namespace stillmap {
 /// other frames are dropped.
 class ReplayedStream : public FrameStream {
  public:
-  /// Both outlive this.
-  ReplayedStream(FrameStream& stream, const LiveRecord& record)
-      : stream_(stream), record_(record) {}
+  /// Stream and record outlive this. `name` is the record's file, for messages.
+  ReplayedStream(FrameStream& stream, const LiveRecord& record, std::string name)
+      : stream_(stream), record_(record), name_(std::move(name)) {}
 
   [[nodiscard]] const CameraModel& camera() const override { return stream_.camera(); }
   [[nodiscard]] std::optional<std::size_t> size() const override { return record_.size(); }
@@ -30,6 +32,7 @@ class ReplayedStream : public FrameStream {
  private:
   FrameStream& stream_;
   const LiveRecord& record_;
+  std::string name_;
   std::size_t next_ = 0;
   std::size_t dropped_ = 0;
 };

@@ -114,7 +114,8 @@ void run_by_clock(const LiveInput& input, LiveLoop& loop, RunLog& log, LiveRepor
 }
 
 void run_recorded(const LiveInput& input, LiveLoop& loop, RunLog& log, LiveReport& report) {
-  ReplayedStream recorded(input.stream, *input.options.live->record);
+  ReplayedStream recorded(
+      input.stream, *input.options.live->record, input.options.live->record_name);
   // A frame, how long reading took and how many were dropped up to it.
   using Read = std::tuple<FramePtr, double, std::size_t>;
   const auto read = [&]() -> std::optional<Read> {

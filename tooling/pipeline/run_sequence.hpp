@@ -22,9 +22,10 @@ namespace stillmap {
 
 /// A run as with a camera: no frame waits for later ones, or for the network.
 struct LiveOptions {
-  double speed = 1;                  ///< of the clock that frames come by
-  std::optional<LiveRecord> record;  ///< instead of by the clock: what was decided then
-  Clock* clock = nullptr;            ///< not owned; needed without a record
+  double speed = 1;                        ///< of the clock that frames come by
+  std::optional<LiveRecord> record;        ///< instead of by the clock: what was decided then
+  std::string record_name = "the record";  ///< its file, for messages
+  Clock* clock = nullptr;                  ///< not owned; needed without a record
 };
 
 struct RunOptions {

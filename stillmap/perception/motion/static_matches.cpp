@@ -7,14 +7,13 @@
 
 #include "stillmap/geometry/epipolar.hpp"
 #include "stillmap/geometry/ray_rotation.hpp"
-#include "stillmap/slam/optim/pose_optimizer.hpp"
+#include "stillmap/geometry/relative_motion.hpp"
 
 namespace stillmap {
 namespace {
 
 // A guessed translation that is shorter than this gives no line worth the name.
 constexpr double kShortGuessM = 0.005;
-constexpr double kPixelSigmaPx = 1.0;  // of a match
 
 TwoViewGeometry guessed_geometry(const CameraModel& camera,
                                  const std::optional<Eigen::Isometry3d>& T) {
@@ -43,26 +42,6 @@ std::optional<Eigen::Matrix3d> pure_rotation(const CameraModel& camera,
   std::ranges::nth_element(residuals, middle);
   if (*middle >= min_parallax_px) return std::nullopt;
   return R;
-}
-
-/// The camera's motion from the matches whose earlier depth is known; nothing where these are fewer
-/// than `min_matches`.
-std::optional<Eigen::Isometry3d> camera_motion(const CameraModel& camera,
-                                               std::span<const PointMatch> matches,
-                                               const Eigen::Isometry3d& start_T_current_previous,
-                                               int min_matches) {
-  std::vector<PoseObservation> observations;
-  for (const PointMatch& match : matches) {
-    if (!(match.previous_depth_m > 0)) continue;
-    PointMeasurement pixel;  // the depth that is measured now has no say: it may be another surface
-    pixel.px = match.current_px;
-    pixel.pixel_weight = 1.0 / kPixelSigmaPx;
-    observations.push_back({camera.unproject(match.previous_px, match.previous_depth_m), pixel});
-  }
-  if (std::ssize(observations) < min_matches) return std::nullopt;
-  const PoseEstimate estimate = optimize_pose(camera, start_T_current_previous, observations);
-  if (estimate.inliers == 0) return std::nullopt;
-  return estimate.T_camera_world;
 }
 
 /// Whether the point is where it would be if it had stood still.
@@ -113,7 +92,7 @@ TwoViewGeometry estimate_two_view(
   }
   const Eigen::Isometry3d start =
       expected_T_current_previous.value_or(Eigen::Isometry3d::Identity());
-  geometry.T = camera_motion(camera, fitting, start, config.min_environment);
+  geometry.T = relative_motion(camera, fitting, start, config.min_environment);
   return geometry;
 }
 
