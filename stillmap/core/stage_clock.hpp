@@ -26,10 +26,13 @@ class StageClock {
     return time(stage, 0.0, work);
   }
 
-  /// The time of all stages so far.
-  [[nodiscard]] double total_ms() const {
+  /// The time of all stages up to that one, included.
+  [[nodiscard]] double total_ms(std::string_view last_stage) const {
     double sum = 0;
-    for (const StageTime& time : times_) sum += time.ms;
+    for (const StageTime& time : times_) {
+      sum += time.ms;
+      if (time.stage == last_stage) break;
+    }
     return sum;
   }
   [[nodiscard]] std::vector<StageTime> take() { return std::move(times_); }

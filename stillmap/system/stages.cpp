@@ -23,6 +23,21 @@ void move_to_world(std::vector<ObjectState>& objects, const Eigen::Isometry3d& T
   }
 }
 
+// The marks of the features, the kept and the dropped ones.
+std::vector<FeatureMark> marks_of(const TrackedFrame& tracked, const FilteredFeatures& features) {
+  std::vector<FeatureMark> marks;
+  marks.reserve(tracked.landmarks.size() + features.dropped.size());
+  for (std::size_t i = 0; i < tracked.landmarks.size(); ++i) {
+    const FeatureVerdict verdict =
+        features.verdicts.empty() ? FeatureVerdict::kStable : features.verdicts[i];
+    marks.push_back({tracked.features->raw_px[i], verdict, tracked.landmarks[i].valid()});
+  }
+  for (const RejectedFeature& dropped : features.dropped) {
+    marks.push_back({dropped.raw_px, dropped.verdict, false});
+  }
+  return marks;
+}
+
 }  // namespace
 
 System::Stages::Stages(const SystemConfig& settings,
@@ -115,7 +130,7 @@ KeyframeId System::Stages::insert_keyframe(const RgbdFrame& frame, const Tracked
 }
 
 FrameResult System::Stages::remember(const Outcome& outcome) {
-  const auto& [frame, judged, tracked, origin, is_keyframe] = outcome;
+  const auto& [frame, judged, tracked, features, origin, is_keyframe] = outcome;
   FrameResult result;
   result.id = frame->id;
   result.stamp = frame->stamp;
@@ -123,6 +138,7 @@ FrameResult System::Stages::remember(const Outcome& outcome) {
   result.T_world_camera = tracked.T_world_camera;
   result.is_keyframe = is_keyframe;
   result.tracked_features = tracked.inliers;
+  result.features = marks_of(tracked, features);
   result.network_mask = judged.judged.mask.raw;
   result.extended_mask = judged.judged.mask.extended;
   result.depth_jumps = Mask(judged.judged.mask.jumps.mat);
@@ -181,20 +197,6 @@ void System::Stages::take_objects(FrameObjects objects) {
     back_end.refer_to_keyframe(awaiting->record, insert_keyframe(frame, tracked));
   }
   back_end.add_view({awaiting->frame, judged, awaiting->record, is_keyframe}, frame_number);
-}
-
-void add_features(FrameResult& result,
-                  const TrackedFrame& tracked,
-                  const FilteredFeatures& features) {
-  result.features.reserve(tracked.landmarks.size() + features.dropped.size());
-  for (std::size_t i = 0; i < tracked.landmarks.size(); ++i) {
-    const FeatureVerdict verdict =
-        features.verdicts.empty() ? FeatureVerdict::kStable : features.verdicts[i];
-    result.features.push_back({tracked.features->raw_px[i], verdict, tracked.landmarks[i].valid()});
-  }
-  for (const RejectedFeature& dropped : features.dropped) {
-    result.features.push_back({dropped.raw_px, dropped.verdict, false});
-  }
 }
 
 }  // namespace stillmap

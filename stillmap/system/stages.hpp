@@ -33,6 +33,7 @@ struct System::Stages {
     const FramePtr& frame;
     const FrameDynamics& dynamics;
     const TrackedFrame& tracked;
+    const FilteredFeatures& features;
     MaskOrigin origin;
     bool is_keyframe;
   };
@@ -74,10 +75,5 @@ struct System::Stages {
   [[nodiscard]] bool may_begin_submap(const Features& features) const;
   [[nodiscard]] KeyframeId insert_keyframe(const RgbdFrame& frame, const TrackedFrame& tracked);
 };
-
-/// Adds the marks of the features, the kept and the dropped ones.
-void add_features(FrameResult& result,
-                  const TrackedFrame& tracked,
-                  const FilteredFeatures& features);
 
 }  // namespace stillmap

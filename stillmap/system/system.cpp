@@ -47,12 +47,11 @@ FrameResult System::process(PreparedFrame prepared, MaskOrigin origin) {
   });
   TrackedFrame tracked =
       clock.time("tracking", [&] { return s.track(frame, std::move(features.features), origin); });
-  const double pose_ms = clock.total_ms();
   const bool is_keyframe =
       clock.time("keyframe", [&] { return s.insert_if_keyframe(frame, tracked, origin); });
-  FrameResult result = s.remember({prepared.frame, dynamics, tracked, origin, is_keyframe});
-  add_features(result, tracked, features);
-  result.pose_ms = pose_ms;
+  FrameResult result =
+      s.remember({prepared.frame, dynamics, tracked, features, origin, is_keyframe});
+  result.pose_ms = clock.total_ms("tracking");
   result.stages = clock.take();
   s.notify(frame, result);
   return result;
