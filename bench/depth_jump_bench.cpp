@@ -34,7 +34,7 @@ void warp_depth(benchmark::State& state) {
 
 void find_depth_jumps(benchmark::State& state) {
   const DepthWarper warper(builtin_camera("tum_fr1"));
-  const WarpedDepth expected = warper.warp(wall(1, 200), step());
+  const HalfDepth expected = warper.warp(wall(1, 200), step());
   const DepthImage now = wall(2, 230);
   for (auto iteration : state) benchmark::DoNotOptimize(depth_jumps(now, expected, {}));
 }

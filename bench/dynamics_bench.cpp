@@ -16,7 +16,8 @@ constexpr std::uint32_t kPast = 100;  // frames: the stage compares with up to 8
 class Office {
  public:
   Office()
-      : stage_(DynamicsConfig{}, office().camera(), 0), extractor_(OrbConfig{}, office().camera()) {
+      : stage_(make_dynamics_stage({}, office().camera(), 0)),
+        extractor_(OrbConfig{}, office().camera()) {
     ObjectTracker tracker(DynamicsConfig{}.object_tracking(), FillRule::kCausal);
     for (std::uint32_t step = 0; step < kPast + 2; ++step) {
       const FramePtr frame = office().frame(step);
@@ -25,15 +26,18 @@ class Office {
         next_.push_back(std::move(objects));
         continue;
       }
-      FrameDynamics dynamics = judge(step, std::move(objects));
+      const FrameDynamics dynamics = judge(step, std::move(objects));
       if (step + 1 == kPast) (void)filter(step, extract(step, dynamics), dynamics);
-      stage_.remember(*frame, office().T_world_camera(step), dynamics);
+      (void)stage_->with_motion(*frame, office().T_world_camera(step), dynamics);
+      stage_->remember(*frame, office().T_world_camera(step), dynamics);
     }
   }
 
   [[nodiscard]] const FrameObjects& objects(std::uint32_t next) const { return next_[next]; }
   [[nodiscard]] FrameDynamics judge(std::uint32_t step, FrameObjects objects) const {
-    return stage_.judge(*office().frame(step), std::move(objects), office().T_world_camera(step));
+    const FramePtr frame = office().frame(step);
+    const MeasuredObjects measured = stage_->measure(*frame, objects);
+    return stage_->judge(*frame, std::move(objects), measured, office().T_world_camera(step));
   }
   [[nodiscard]] Features extract(std::uint32_t step, const FrameDynamics& dynamics) {
     const FramePtr frame = office().frame(step);
@@ -42,15 +46,15 @@ class Office {
   [[nodiscard]] FilteredFeatures filter(std::uint32_t step,
                                         Features features,
                                         const FrameDynamics& dynamics) {
-    return stage_.filter(
+    return stage_->filter(
         *office().frame(step), std::move(features), dynamics, office().T_world_camera(step));
   }
   void remember(std::uint32_t step, FrameDynamics& dynamics) {
-    stage_.remember(*office().frame(step), office().T_world_camera(step), dynamics);
+    stage_->remember(*office().frame(step), office().T_world_camera(step), dynamics);
   }
 
  private:
-  DynamicsStage stage_;
+  std::unique_ptr<DynamicsStage> stage_;
   OrbExtractor extractor_;
   std::vector<FrameObjects> next_;  // of the two frames after the past
 };
@@ -60,7 +64,7 @@ void judge_frame(benchmark::State& state) {
   int dynamic_pixels = 0;
   for (auto iteration : state) {
     const FrameDynamics dynamics = scene.judge(kPast, scene.objects(0));
-    dynamic_pixels = cv::countNonZero(dynamics.excluded);
+    dynamic_pixels = cv::countNonZero(dynamics.excluded.mat);
   }
   state.counters["objects"] = static_cast<double>(scene.objects(0).objects.size());
   state.counters["excluded_px"] = dynamic_pixels;

@@ -16,7 +16,7 @@ DynamicRegions people(std::uint32_t step) {
   for (const DetectedObject& object : found.objects) {
     if (object.class_name == "person") mask.setTo(1, found.mask.mat == object.id);
   }
-  return {mask, mask};
+  return {Mask(mask), Mask(mask)};
 }
 
 void keep_view(benchmark::State& state) {

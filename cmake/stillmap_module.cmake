@@ -21,8 +21,8 @@ endif()
 install(TARGETS stillmap_options EXPORT stillmap)
 
 # The headers of other libraries that most files read are read once, for all modules together, and
-# once more with GoogleTest for all tests: docs/benchmarks.md has what that gives. The tidy preset
-# builds without, so that each file includes what it uses.
+# once more with GoogleTest for all tests. The tidy preset builds without, so
+# that each file includes what it uses.
 function(stillmap_precompiled NAME)
   file(WRITE ${PROJECT_BINARY_DIR}/precompiled/${NAME}.cpp.in "// Compiles nothing: its target holds precompiled headers.\n")
   configure_file(${PROJECT_BINARY_DIR}/precompiled/${NAME}.cpp.in ${PROJECT_BINARY_DIR}/precompiled/${NAME}.cpp COPYONLY)
@@ -34,7 +34,7 @@ function(stillmap_precompiled NAME)
     <set> <span> <string> <string_view> <thread> <utility> <vector>
     <Eigen/Core> <Eigen/Geometry> <fmt/core.h> <opencv2/core/mat.hpp> ${ARGN})
 endfunction()
-# Tests link libraries that are optimised in full; their own files need less: an eighth of the time is saved,
+# Tests link libraries that are optimised in full; their own files need less: some of the time is saved,
 # and GCC 12's false warnings about plain std::string code. Precompiled headers and the files that read them
 # have the same level: GCC goes by the header's.
 set(stillmap_test_optimization $<$<NOT:$<CONFIG:Debug>>:-O1>)
