@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # From a fresh clone on Debian 12: `make demo` or `make test`, in either order. The work is CMake's;
 # this only installs what is missing and names the usual steps.
-.PHONY: setup models configure build program test test-fast demo bench format tidy clean
+.PHONY: setup models configure build program test test-fast demo api bench format tidy clean
 .DEFAULT_GOAL := build
 
 program := build/release/bin/stillmap
@@ -68,6 +68,10 @@ bench: setup
 	@cmake --build build/bench --parallel
 	@tools/bench_runs --program build/bench/bin/stillmap --parts build/bench/bin --out build/bench/results.json \
 	  $(if $(filter full,$(BENCH)),--lengths 1000$(comma)3000) $(SEQUENCES)
+
+# The page of the library's classes: build/api/html/index.html.
+api: setup
+	@tools/api_page build/api
 
 format: setup
 	@tools/check_format --fix

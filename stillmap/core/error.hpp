@@ -15,6 +15,7 @@ class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 
+  /// The text is that of fmt::format(format, args...).
   template <class... Args>
   explicit Error(fmt::format_string<Args...> format, Args&&... args)
       : std::runtime_error(fmt::format(format, std::forward<Args>(args)...)) {}

@@ -10,17 +10,20 @@
 
 namespace stillmap {
 
+/// Red, green, blue.
 using Rgb = std::array<std::uint8_t, 3>;
 
 /// Points with their attributes, as parallel arrays. `positions` and `colors` have equal length;
 /// `labels` and `normals` are empty or have that length too.
 struct PointCloud {
   std::vector<Eigen::Vector3f> positions;  ///< metres
-  std::vector<Rgb> colors;
+  std::vector<Rgb> colors;                 ///< of the surface
   std::vector<std::uint8_t> labels;      ///< class of the surface (COCO, counted from 1), 0 = none
   std::vector<Eigen::Vector3f> normals;  ///< unit length
 
+  /// Number of points.
   [[nodiscard]] std::size_t size() const { return positions.size(); }
+  /// Whether there are no points.
   [[nodiscard]] bool empty() const { return positions.empty(); }
 };
 

@@ -12,14 +12,15 @@ namespace stillmap {
 /// One colour image and the depth image taken with it, of equal size. A frame is made once and
 /// never changed afterwards.
 struct RgbdFrame {
-  FrameId id;
+  FrameId id;                  ///< its position in the sequence
   Stamp stamp;                 ///< time of the colour image
   double depth_stamp_s = 0.0;  ///< time of the depth image
-  ColorImage color;
-  GrayImage gray;
-  DepthImage depth;
+  ColorImage color;            ///< red, green, blue
+  GrayImage gray;              ///< brightness of `color`
+  DepthImage depth;            ///< metres along the optical axis; 0 where it is missing
 };
 
+/// A frame is shared by all stages and copied by none.
 using FramePtr = std::shared_ptr<const RgbdFrame>;
 
 /// Makes a frame of two images of equal size, taken at one time: `color` in the order red, green,

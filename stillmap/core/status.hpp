@@ -6,9 +6,10 @@
 
 namespace stillmap {
 
+/// The outcome of tracking for one frame.
 enum class TrackingStatus : std::uint8_t {
   kInitialized,  ///< the first frame of a submap: its camera is the submap's origin
-  kTracked,
+  kTracked,      ///< a pose was found from the frames before
   kRelocalized,  ///< a pose was found again after a loss
   kLost,         ///< no pose
 };
@@ -16,7 +17,7 @@ enum class TrackingStatus : std::uint8_t {
 /// The verdict of the filter on a feature off the masks. If several apply, it is the first of
 /// kDynamic, kUnstableDepth, kMissingDepth, kStaticInBox, kStable.
 enum class FeatureVerdict : std::uint8_t {
-  kStable,
+  kStable,         ///< none of the others
   kMissingDepth,   ///< a pixel around it has no depth
   kUnstableDepth,  ///< the depth around it varies too much
   kDynamic,        ///< in the box of a dynamic object and not a static match
@@ -26,7 +27,7 @@ enum class FeatureVerdict : std::uint8_t {
 /// The wall-clock time of one stage's work on a frame.
 struct StageTime {
   std::string_view stage;  ///< refers to a literal
-  double ms = 0;
+  double ms = 0;           ///< milliseconds
 };
 
 }  // namespace stillmap

@@ -11,12 +11,14 @@ namespace stillmap {
 /// A time as a file gave it. The text is kept because outputs repeat stamps exactly as they were
 /// read: a double resolves today's stamps to about 0.2 microseconds only.
 struct Stamp {
-  double seconds = 0.0;
-  std::string text;
+  double seconds = 0.0;  ///< as a number, for arithmetic
+  std::string text;      ///< as the file has it
 };
 
+/// The pose of a camera at one time.
 struct StampedPose {
-  Stamp stamp;
+  Stamp stamp;  ///< of the colour image
+  /// From camera to world coordinates, metres.
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
 };
 

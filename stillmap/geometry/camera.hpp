@@ -16,15 +16,22 @@ namespace stillmap {
 /// pixel is the position of the same ray without distortion (same fx, fy, cx, cy). Features are
 /// detected and depth is read at raw pixels; geometry uses ideal pixels.
 struct CameraModel {
-  std::string name;
-  int width_px = 0;
-  int height_px = 0;
-  double fx = 0, fy = 0, cx = 0, cy = 0;          ///< pixels
-  double k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0;  ///< distortion, on normalised coordinates
-  double depth_factor = 5000;                     ///< units of a stored depth image per metre
+  std::string name;   ///< of a built-in camera, or of its file
+  int width_px = 0;   ///< columns of both images
+  int height_px = 0;  ///< rows of both images
+  /// Focal lengths and principal point, pixels.
+  /// @{
+  double fx = 0, fy = 0, cx = 0, cy = 0;
+  /// @}
+  /// Distortion, on normalised coordinates.
+  /// @{
+  double k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0;
+  /// @}
+  double depth_factor = 5000;  ///< units of a stored depth image per metre
 
   double readout_s = 0;  ///< rolling shutter: time from the first row to the last; 0 = global
 
+  /// Whether any parameter of the distortion is not 0.
   [[nodiscard]] bool distorted() const {
     return k1 != 0 || k2 != 0 || p1 != 0 || p2 != 0 || k3 != 0;
   }
@@ -50,6 +57,7 @@ struct CameraModel {
 /// The built-in camera `name`: tum_fr1, tum_fr2, tum_fr3 or bonn. Throws Error, with a hint at the
 /// nearest name, for any other name.
 [[nodiscard]] CameraModel builtin_camera(std::string_view name);
+/// The names that builtin_camera() knows.
 [[nodiscard]] std::vector<std::string> builtin_camera_names();
 
 /// The normalised ray (x/z, y/z) of every raw pixel, as an image of the camera's size.

@@ -15,19 +15,21 @@ namespace stillmap {
 
 /// A frame whose images could not be read.
 struct DamagedFrame {
-  FrameId id;
-  Stamp stamp;
+  FrameId id;          ///< its position in the sequence
+  Stamp stamp;         ///< of its colour image
   std::string damage;  ///< one line that says which image is damaged, and how
 };
 
 /// A frame, never null, or the reason why there is none.
 using StreamedFrame = std::variant<FramePtr, DamagedFrame>;
 
+/// The id of a frame, damaged or not.
 [[nodiscard]] inline FrameId id_of(const StreamedFrame& streamed) {
   const FramePtr* const frame = std::get_if<FramePtr>(&streamed);
   return frame != nullptr ? (*frame)->id : std::get<DamagedFrame>(streamed).id;
 }
 
+/// The stamp of a frame, damaged or not.
 [[nodiscard]] inline const Stamp& stamp_of(const StreamedFrame& streamed) {
   const FramePtr* const frame = std::get_if<FramePtr>(&streamed);
   return frame != nullptr ? (*frame)->stamp : std::get<DamagedFrame>(streamed).stamp;

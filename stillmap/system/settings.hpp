@@ -22,8 +22,11 @@ class Settings {
   Settings();
   /// From the typed settings of the library's own code.
   Settings(const SystemConfig& config);  // NOLINT(google-explicit-constructor): the same values
+  /// Copies share nothing.
+  /// @{
   Settings(const Settings& other);
   Settings& operator=(const Settings& other);
+  /// @}
   ~Settings();
 
   /// Sets one value from its text. Throws Error that names the key, and what was expected, for an

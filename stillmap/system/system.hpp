@@ -15,6 +15,7 @@
 #include "stillmap/system/results.hpp"
 #include "stillmap/system/settings.hpp"
 
+/// All of the library.
 namespace stillmap {
 
 class Map;
@@ -22,6 +23,7 @@ enum class Stage;
 struct PreparedFrame;
 struct Session;
 
+/// How a System runs, beside its settings.
 struct SystemOptions {
   /// 1: everything runs inside the calls. 2 or more: mapping, dense map and loops run beside the
   /// caller, and the map is put together on that many threads. The results are the same bits.
@@ -55,6 +57,7 @@ class System {
   /// (ObjectFinder gives them). Only with objects of its own may a frame become a key frame, begin
   /// a map or be seen in the dense map.
   FrameResult process(const RgbdFrame& frame, FrameObjects objects = {});
+  /// The same for a frame that the caller shares. `origin` says whose objects it comes with.
   FrameResult process(const FramePtr& frame,
                       FrameObjects objects = {},
                       MaskOrigin origin = MaskOrigin::kOwn);
@@ -62,6 +65,7 @@ class System {
   /// The part of process() that needs no other frame. May be called on any thread while earlier
   /// frames are processed.
   [[nodiscard]] PreparedFrame prepare(FramePtr frame, FrameObjects objects) const;
+  /// The rest of process() for a frame that prepare() was given.
   FrameResult process(PreparedFrame prepared, MaskOrigin origin = MaskOrigin::kOwn);
 
   /// The own objects of a frame that was processed while they were awaited, in the order of those

@@ -14,11 +14,18 @@ namespace stillmap {
 /// An axis-aligned rectangle [x0, x1) x [y0, y1) in pixels: the pixel in column u and row v covers
 /// [u, u + 1) x [v, v + 1). It may reach beyond the image.
 struct PixelBox {
+  /// Left, upper, right and lower edge.
+  /// @{
   double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+  /// @}
 
+  /// Pixels from left to right.
   [[nodiscard]] double width() const { return x1 - x0; }
+  /// Pixels from top to bottom.
   [[nodiscard]] double height() const { return y1 - y0; }
+  /// Width times height.
   [[nodiscard]] double area() const { return width() * height(); }
+  /// Exact equality of all edges.
   bool operator==(const PixelBox&) const = default;
 };
 
@@ -29,22 +36,24 @@ struct DetectedObject {
   float score = 0;         ///< confidence of the network, in [0, 1]
   PixelBox box;            ///< not empty
 
+  /// Exact equality of all members.
   bool operator==(const DetectedObject&) const = default;
 };
 
 /// The object of each pixel: 8 bits, the id of an object, or 0. Like the images of core/images.hpp,
 /// it is never written to by a function that was given one.
 struct ObjectMask {
-  cv::Mat1b mat;
+  cv::Mat1b mat;  ///< empty where no object has pixels
   ObjectMask() = default;
+  /// Shares the pixels.
   explicit ObjectMask(cv::Mat1b ids) : mat(std::move(ids)) {}
 };
 
 /// The detections of one colour image.
 struct FrameDetections {
-  Stamp stamp;  ///< of the colour image
-  std::vector<DetectedObject> objects;
-  ObjectMask mask;  ///< as large as the image; empty where no object has pixels
+  Stamp stamp;                          ///< of the colour image
+  std::vector<DetectedObject> objects;  ///< in the order of the network or the file
+  ObjectMask mask;                      ///< as large as the image; empty where no object has pixels
 };
 
 }  // namespace stillmap

@@ -24,24 +24,25 @@ enum class MaskSource : std::uint8_t {
 
 /// The frames from which a filled box comes.
 struct BoxOrigin {
-  std::optional<FrameId> before;
-  std::optional<FrameId> after;
+  std::optional<FrameId> before;  ///< the nearest earlier frame in which it was detected
+  std::optional<FrameId> after;   ///< the nearest later one
 
+  /// Exact equality of both.
   bool operator==(const BoxOrigin&) const = default;
 };
 
 /// An object of a frame with its track.
 struct TrackedObject {
-  DetectedObject detection;  ///< its id is its position in the list of the frame, from 1
-  TrackId track;
+  DetectedObject detection;         ///< its id is its position in the list of the frame, from 1
+  TrackId track;                    ///< the same in all frames of the object
   std::optional<BoxOrigin> filled;  ///< set if the network missed the object
-  MaskSource mask_source = MaskSource::kDetected;
+  MaskSource mask_source = MaskSource::kDetected;  ///< where its pixels come from
 };
 
 /// The objects of a frame: the detected ones, in the order of the detections, then the filled ones.
 struct FrameObjects {
-  FrameId frame;
-  Stamp stamp;
+  FrameId frame;                       ///< of the frame in which they are
+  Stamp stamp;                         ///< of that frame
   std::vector<TrackedObject> objects;  ///< at most 255
   ObjectMask mask;                     ///< ids as in `objects`; empty where no object has pixels
 };

@@ -20,8 +20,11 @@ class ObjectFinder {
  public:
   /// Throws Error where `network` is null.
   explicit ObjectFinder(std::shared_ptr<const Segmenter> network);
+  /// The moved-from finder may only be assigned to or destroyed.
+  /// @{
   ObjectFinder(ObjectFinder&&) noexcept;
   ObjectFinder& operator=(ObjectFinder&&) noexcept;
+  /// @}
   ~ObjectFinder();
 
   /// The objects of a frame. Frames come in the order of their stamps. Throws what the network

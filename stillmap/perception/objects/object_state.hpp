@@ -19,16 +19,19 @@ enum class Category : std::uint8_t {
   kDynamic,             ///< moves by itself
 };
 
+/// The category in words, as the object log has it.
 [[nodiscard]] std::string_view category_name(Category category);
 
 /// An interval of depths, metres.
 struct DepthInterval {
-  float min_m = 0;
-  float max_m = 0;
+  float min_m = 0;  ///< the nearest depth
+  float max_m = 0;  ///< the farthest depth
 
+  /// Whether the two have a depth in common.
   [[nodiscard]] bool overlaps(const DepthInterval& other) const {
     return !(max_m < other.min_m || other.max_m < min_m);
   }
+  /// Whether the depth lies in the interval, ends included.
   [[nodiscard]] bool contains(float depth_m) const { return depth_m >= min_m && depth_m <= max_m; }
 };
 
@@ -43,19 +46,22 @@ enum class StateReason : std::uint8_t {
   kDepthUnknown,  ///< dynamic: a person may interact with it
   kMoving,        ///< dynamic: it was observed to move
 };
+/// The reason in words, as the object log has it.
 [[nodiscard]] std::string_view reason_name(StateReason reason);
 
+/// What is known of an object's motion.
 enum class MotionState : std::uint8_t {
-  kUnknown,  ///< seen too seldom, or without depth
-  kStill,
-  kMoving,
+  kUnknown,         ///< seen too seldom, or without depth
+  kStill,           ///< it stays where it is
+  kMoving,          ///< by itself, as far as is known
   kMovedBySomeone,  ///< moving, and a person interacts with it
 };
+/// The state in words, as the object log has it.
 [[nodiscard]] std::string_view motion_name(MotionState state);
 
 /// The motion of an object, in the world frame of the frame's pose.
 struct Motion {
-  MotionState state = MotionState::kUnknown;
+  MotionState state = MotionState::kUnknown;  ///< whether it moves
   /// The middle of the visible surface, metres; none without depth.
   std::optional<Eigen::Vector3d> p_world;
   Eigen::Vector3d velocity_m_s = Eigen::Vector3d::Zero();  ///< 0 where unknown
@@ -65,14 +71,14 @@ struct Motion {
 
 /// The state of an object in a frame: its track, whether it is dynamic and why, and its motion.
 struct ObjectState {
-  TrackId track;
-  std::string class_name;  ///< the COCO name if there is one
-  Category category = Category::kStatic;
-  bool dynamic = false;
-  StateReason reason = StateReason::kStaticClass;
+  TrackId track;                                   ///< the same in all frames of the object
+  std::string class_name;                          ///< the COCO name if there is one
+  Category category = Category::kStatic;           ///< of its class
+  bool dynamic = false;                            ///< in this frame
+  StateReason reason = StateReason::kStaticClass;  ///< why it is dynamic or not
   std::optional<TrackId> person;  ///< the person who interacts with it, or is before or behind it
-  PixelBox box;
-  bool filled = false;                  ///< the network missed it in this frame
+  PixelBox box;                   ///< in this frame
+  bool filled = false;            ///< the network missed it in this frame
   std::optional<DepthInterval> depths;  ///< of its mask, outliers removed; metres
   float median_depth_m = 0;             ///< of its mask; 0 without depth
   Motion motion;                        ///< unknown in a frame without a pose

@@ -27,6 +27,7 @@ class Segmenter {
                                                 const Stamp& stamp) const = 0;
 };
 
+/// What a segmenter may use.
 struct SegmenterOptions {
   int threads = 2;  ///< number of threads for one run of a network
 };
