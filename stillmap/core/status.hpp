@@ -14,7 +14,7 @@ enum class TrackingStatus : std::uint8_t {
   kLost,         ///< no pose
 };
 
-/// The verdict of the filter on a feature off the masks. If several apply, it is the first of
+/// The verdict on a feature. If several apply, it is the first of
 /// kDynamic, kUnstableDepth, kMissingDepth, kStaticInBox, kStable.
 enum class FeatureVerdict : std::uint8_t {
   kStable,         ///< none of the others
@@ -22,6 +22,7 @@ enum class FeatureVerdict : std::uint8_t {
   kUnstableDepth,  ///< the depth around it varies too much
   kDynamic,        ///< in the box of a dynamic object and not a static match
   kStaticInBox,    ///< in the box of a dynamic object and a static match
+  kDoubted,  ///< on a dynamic object that is not known to move: used where the others are too few
 };
 
 /// The wall-clock time of one stage's work on a frame.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "stillmap/core/stopwatch.hpp"
+#include "stillmap/slam/features/feature_selection.hpp"
 
 namespace stillmap {
 namespace {
@@ -23,13 +24,31 @@ void move_to_world(std::vector<ObjectState>& objects, const Eigen::Isometry3d& T
   }
 }
 
+// Features that are more likely to move than not make no landmarks.
+TrackedFrame without_doubted_newcomers(TrackedFrame tracked, const CameraModel& camera) {
+  const Features& features = *tracked.features;
+  if (features.trust.empty()) return tracked;
+  std::vector<std::uint8_t> keep(features.size(), 0);
+  std::vector<LandmarkId> landmarks;
+  for (std::size_t i = 0; i < keep.size(); ++i) {
+    if (!tracked.landmarks[i].valid() && features.trust[i] < kTrustOfLandmarks) continue;
+    keep[i] = 1;
+    landmarks.push_back(tracked.landmarks[i]);
+  }
+  tracked.features = std::make_shared<const Features>(select_features(features, keep, camera));
+  tracked.landmarks = std::move(landmarks);
+  return tracked;
+}
+
 // The marks of the features, the kept and the dropped ones.
 std::vector<FeatureMark> marks_of(const TrackedFrame& tracked, const FilteredFeatures& features) {
   std::vector<FeatureMark> marks;
   marks.reserve(tracked.landmarks.size() + features.dropped.size());
   for (std::size_t i = 0; i < tracked.landmarks.size(); ++i) {
-    const FeatureVerdict verdict =
-        features.verdicts.empty() ? FeatureVerdict::kStable : features.verdicts[i];
+    const bool doubted = !tracked.features->trust.empty() && tracked.features->trust[i] < 1;
+    const FeatureVerdict judged =
+        i < features.verdicts.size() ? features.verdicts[i] : FeatureVerdict::kStable;
+    const FeatureVerdict verdict = doubted ? FeatureVerdict::kDoubted : judged;
     marks.push_back({tracked.features->raw_px[i], verdict, tracked.landmarks[i].valid()});
   }
   for (const RejectedFeature& dropped : features.dropped) {
@@ -90,7 +109,6 @@ bool System::Stages::needs_own_objects() const {
 }
 
 bool System::Stages::may_begin_submap(const Features& features) const {
-  if (!needs_own_objects()) return false;
   int with_depth = 0;
   for (std::size_t i = 0; i < features.size(); ++i) {
     with_depth += measure.has_depth(features, i) ? 1 : 0;
@@ -98,11 +116,37 @@ bool System::Stages::may_begin_submap(const Features& features) const {
   return with_depth >= config.tracking.tracker.min_inliers;
 }
 
-TrackedFrame System::Stages::track(const RgbdFrame& frame, Features features, MaskOrigin origin) {
+std::optional<Features> System::Stages::with_doubted(const PreparedFrame& prepared,
+                                                     const Features& features,
+                                                     const FrameDynamics& judged) const {
+  const std::optional<DoubtedPixels> pixels = dynamics->doubted(judged);
+  if (!pixels) return std::nullopt;
+  Features further = extractor.extract(prepared.corners, prepared.frame->depth, pixels->others);
+  for (const Eigen::Vector2f& raw : further.raw_px) {
+    const Eigen::Vector2i px = raw.array().round().cast<int>();
+    further.trust.push_back(pixels->trust(px.y(), px.x()));
+  }
+  return joined_features(features, further, camera);
+}
+
+TrackedFrame System::Stages::track(const PreparedFrame& prepared,
+                                   Features features,
+                                   const FrameDynamics& judged,
+                                   MaskOrigin origin) {
+  const RgbdFrame& frame = *prepared.frame;
+  const MoreFeatures more = [&](const Features& own) {
+    return with_doubted(prepared, own, judged);
+  };
   TrackedFrame tracked =
-      tracker.track(frame, std::move(features), back_end.map(), back_end.places());
-  if (!has_pose(tracked) && origin == MaskOrigin::kOwn && may_begin_submap(*tracked.features)) {
-    return tracker.start(frame, tracked.features);
+      tracker.track(frame, std::move(features), back_end.map(), back_end.places(), more);
+  if (!has_pose(tracked) && origin == MaskOrigin::kOwn && needs_own_objects()) {
+    FeaturesPtr begun = tracked.features;
+    if (!may_begin_submap(*begun)) {
+      if (std::optional<Features> all = more(*begun)) {
+        begun = std::make_shared<const Features>(*std::move(all));
+      }
+    }
+    if (may_begin_submap(*begun)) return tracker.start(frame, begun);
   }
   if (!localize_only) back_end.count_landmarks(tracked);
   return tracked;
@@ -119,6 +163,7 @@ bool System::Stages::insert_if_keyframe(const RgbdFrame& frame,
       !(may && wants_keyframe(config.keyframe, tracked, since_keyframe, back_end.map()))) {
     return false;
   }
+  if (!begins) tracked = without_doubted_newcomers(std::move(tracked), camera);
   tracked.reference = insert_keyframe(frame, tracked);
   tracker.set_reference(tracked.reference, back_end.map());
   return true;

@@ -42,7 +42,12 @@ struct System::Stages {
   void apply_finished_work();
   /// Where the camera should be, in the odometry frame; nothing when it is lost or has not begun.
   [[nodiscard]] std::optional<Eigen::Isometry3d> expected_pose(const RgbdFrame& frame) const;
-  [[nodiscard]] TrackedFrame track(const RgbdFrame& frame, Features features, MaskOrigin origin);
+  /// The frame's pose by its features and, where these are too few, by those on dynamic objects
+  /// that are not known to move.
+  [[nodiscard]] TrackedFrame track(const PreparedFrame& prepared,
+                                   Features features,
+                                   const FrameDynamics& judged,
+                                   MaskOrigin origin);
   /// Makes a key frame of the frame where the rules want one; it is its own reference then.
   bool insert_if_keyframe(const RgbdFrame& frame, TrackedFrame& tracked, MaskOrigin origin);
   /// Records the frame and lets dynamics, dense map and late objects know it.
@@ -72,7 +77,10 @@ struct System::Stages {
   int lost_frames = 0;  // in a row
 
  private:
-  [[nodiscard]] bool may_begin_submap(const Features& features) const;
+  [[nodiscard]] bool may_begin_submap(const Features& features) const;  // by their number
+  [[nodiscard]] std::optional<Features> with_doubted(const PreparedFrame& prepared,
+                                                     const Features& features,
+                                                     const FrameDynamics& judged) const;
   [[nodiscard]] KeyframeId insert_keyframe(const RgbdFrame& frame, const TrackedFrame& tracked);
 };
 

@@ -40,13 +40,14 @@ FrameResult System::process(PreparedFrame prepared, MaskOrigin origin) {
     return s.dynamics->judge(frame, std::move(prepared.objects), prepared.measured, expected);
   });
   Features extracted = clock.time("features", prepared.corners_ms, [&] {
-    return s.extractor.extract(std::move(prepared.corners), frame.depth, dynamics.excluded);
+    return s.extractor.extract(prepared.corners, frame.depth, dynamics.excluded);
   });
   FilteredFeatures features = clock.time("feature filter", [&] {
     return s.dynamics->filter(frame, std::move(extracted), dynamics, expected);
   });
-  TrackedFrame tracked =
-      clock.time("tracking", [&] { return s.track(frame, std::move(features.features), origin); });
+  TrackedFrame tracked = clock.time("tracking", [&] {
+    return s.track(prepared, std::move(features.features), dynamics, origin);
+  });
   const bool is_keyframe =
       clock.time("keyframe", [&] { return s.insert_if_keyframe(frame, tracked, origin); });
   FrameResult result =

@@ -10,7 +10,7 @@
 namespace stillmap {
 namespace {
 
-constexpr std::array<VerdictStyle, 6> kStyles = {
+constexpr std::array<VerdictStyle, 7> kStyles = {
     {{FeatureVerdict::kStable, false, "found but not tracked", 2, {165, 165, 165}},
      {FeatureVerdict::kMissingDepth, false, "with depth missing", 2, {70, 160, 255}},
      {FeatureVerdict::kUnstableDepth, false, "at a jump of depth", 2, {255, 150, 0}},
@@ -20,6 +20,11 @@ constexpr std::array<VerdictStyle, 6> kStyles = {
       "static in the box of something dynamic",
       3,
       {0, 230, 255}},
+     {FeatureVerdict::kDoubted,
+      true,
+      "on something dynamic that is not seen to move",
+      3,
+      {220, 255, 60}},
      {FeatureVerdict::kStable, true, "tracked", 3, {40, 255, 110}}}};
 
 cv::Scalar scalar(Rgb color) {

@@ -67,6 +67,19 @@ Mask DynamicMask::all() const {
   return Mask(both);
 }
 
+Mask DynamicMask::all_without(const std::array<bool, 256>& left_out) const {
+  cv::Mat1b pixels(extended.mat.size());
+  for (int row = 0; row < pixels.rows; ++row) {
+    const std::uint8_t *ids = extended.mat[row], *jump = jumps.mat[row];
+    std::uint8_t* target = pixels[row];
+    for (int x = 0; x < pixels.cols; ++x) {
+      const bool moves = ids[x] != 0 && !left_out[ids[x]];
+      target[x] = moves || jump[x] != 0 ? 255 : 0;
+    }
+  }
+  return Mask(pixels);
+}
+
 DynamicObjects::DynamicObjects(const DynamicObjectsConfig& config,
                                const CameraModel& camera,
                                const DynamicsMode& mode)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -58,6 +59,8 @@ struct DynamicMask {
   }
   /// The union of extended masks and depth jumps.
   [[nodiscard]] Mask all() const;
+  /// The same without the masks of some objects; per id, from 1, not 0 for those left out.
+  [[nodiscard]] Mask all_without(const std::array<bool, 256>& left_out) const;
 };
 
 struct DynamicsResult {

@@ -2,6 +2,7 @@
 #include "stillmap/perception/motion/dynamics_stage.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <deque>
 #include <utility>
@@ -27,6 +28,19 @@ Mask widened(const Mask& mask, double margin_px) {
   return Mask(wide);
 }
 
+/// Which objects, by their ids, are of some tracks.
+std::array<bool, 256> objects_among(const std::vector<ObjectState>& states,
+                                    const std::vector<TrackId>& tracks) {
+  std::array<bool, 256> among{};
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    among[i + 1] = std::ranges::find(tracks, states[i].track) != tracks.end();
+  }
+  return among;
+}
+
+constexpr float kMostDoubt = 0.9F;      // of a network that is sure
+constexpr float kTrustOfMovers = 0.1F;  // wrong poses and masks make still things seem to move
+
 class JudgingStage final : public DynamicsStage {
  public:
   JudgingStage(const DynamicsConfig& config,
@@ -35,6 +49,7 @@ class JudgingStage final : public DynamicsStage {
                std::uint32_t seed)
       : config_(config),
         jumps_(mode.jumps),
+        doubts_(mode.doubts),
         objects_(config.objects, camera, mode),
         motions_(config.motion, camera),
         filter_(config.features, camera, mode, seed) {}
@@ -48,6 +63,7 @@ class JudgingStage final : public DynamicsStage {
       FrameObjects objects,
       const MeasuredObjects& measured,
       const std::optional<Eigen::Isometry3d>& T_odometry_camera_expected) const override;
+  [[nodiscard]] std::optional<DoubtedPixels> doubted(const FrameDynamics& dynamics) const override;
   [[nodiscard]] FilteredFeatures filter(
       const RgbdFrame& frame,
       Features features,
@@ -71,11 +87,14 @@ class JudgingStage final : public DynamicsStage {
   };
   [[nodiscard]] std::vector<PreviousDepth> previous(
       const std::optional<Eigen::Isometry3d>& T_odometry_camera) const;
+  [[nodiscard]] std::vector<float> trust_in(const FrameObjects& objects,
+                                            const std::vector<ObjectState>& states) const;
   [[nodiscard]] const PastView* past_view(std::int64_t frames_ago) const;
   [[nodiscard]] const PastView* first_since_lost() const;
 
   DynamicsConfig config_;
   JumpRule jumps_;
+  bool doubts_;
   DynamicObjects objects_;
   MotionEstimator motions_;
   FeatureFilter filter_;
@@ -124,8 +143,49 @@ FrameDynamics JudgingStage::judge(
   dynamics.judged = objects_.judge(
       frame.depth, objects, measured, previous(T_odometry_camera_expected), motions_.moving());
   dynamics.objects = std::move(objects);
-  dynamics.excluded = widened(dynamics.judged.mask.all(), config_.feature_margin_px);
+  std::array<bool, 256> standing{};
+  if (doubts_) {
+    dynamics.trust = trust_in(dynamics.objects, dynamics.judged.states);
+    standing = objects_among(dynamics.judged.states, motions_.standing());
+  }
+  dynamics.excluded =
+      widened(dynamics.judged.mask.all_without(standing), config_.feature_margin_px);
   return dynamics;
+}
+
+// A network that is sure is mostly right about what a thing is, not about whether it moves.
+std::vector<float> JudgingStage::trust_in(const FrameObjects& objects,
+                                          const std::vector<ObjectState>& states) const {
+  const std::array<bool, 256> moving = objects_among(states, motions_.moving());
+  std::vector<float> trust;
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    const float score = std::clamp(objects.objects[i].detection.score, 0.0F, 1.0F);
+    trust.push_back((moving[i + 1] ? kTrustOfMovers : 1.0F) * (1.0F - kMostDoubt * score));
+  }
+  return trust;
+}
+
+std::optional<DoubtedPixels> JudgingStage::doubted(const FrameDynamics& dynamics) const {
+  if (std::ranges::none_of(dynamics.trust, [](float trust) { return trust > 0; })) {
+    return std::nullopt;
+  }
+  std::array<bool, 256> doubtful{};
+  std::array<float, 256> trust{};
+  trust[0] = 1.0F - kMostDoubt;  // the margin around an object
+  for (std::size_t i = 0; i < dynamics.trust.size(); ++i) {
+    trust[i + 1] = dynamics.trust[i];
+    doubtful[i + 1] = dynamics.trust[i] > 0;
+  }
+  const Mask moves = widened(dynamics.judged.mask.all_without(doubtful), config_.feature_margin_px);
+  DoubtedPixels pixels{Mask(cv::Mat1b(moves.mat.size())), cv::Mat1f(moves.mat.size())};
+  for (int row = 0; row < moves.mat.rows; ++row) {
+    for (int x = 0; x < moves.mat.cols; ++x) {
+      const bool doubted = dynamics.excluded.covers(row, x) && !moves.covers(row, x);
+      pixels.others.mat(row, x) = doubted ? 0 : 255;
+      pixels.trust(row, x) = trust[dynamics.judged.mask.extended.mat(row, x)];
+    }
+  }
+  return pixels;
 }
 
 FilteredFeatures JudgingStage::filter(
@@ -196,6 +256,10 @@ FrameDynamics DynamicsStage::judge(
     const MeasuredObjects& /*measured*/,
     const std::optional<Eigen::Isometry3d>& /*T_odometry_camera_expected*/) const {
   return {};
+}
+
+std::optional<DoubtedPixels> DynamicsStage::doubted(const FrameDynamics& /*dynamics*/) const {
+  return std::nullopt;
 }
 
 FilteredFeatures DynamicsStage::filter(

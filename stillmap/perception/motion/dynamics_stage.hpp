@@ -65,7 +65,19 @@ struct DynamicsConfig {
 struct FrameDynamics {
   FrameObjects objects;
   DynamicsResult judged;  ///< `judged.states` in the order of the objects
-  Mask excluded;          ///< pixels that no feature may have: `judged.mask` and a margin
+  /// Pixels that no feature may have: `judged.mask`, without what has stood still since it was
+  /// first seen, and a margin.
+  Mask excluded;
+  /// Per object, how likely it is static, in [0, 1]; 0 for what is known to move. Empty: the mode
+  /// doubts nothing.
+  std::vector<float> trust = {};
+};
+
+/// The excluded pixels that are only doubted to be static: on dynamic objects that are not known to
+/// move.
+struct DoubtedPixels {
+  Mask others;      ///< all pixels but these
+  cv::Mat1f trust;  ///< of each of these
 };
 
 /// Finds the pixels and features of each frame that are not static, and remembers the past frames
@@ -92,6 +104,10 @@ class DynamicsStage {
       FrameObjects objects,
       const MeasuredObjects& measured,
       const std::optional<Eigen::Isometry3d>& T_odometry_camera_expected) const;
+
+  /// The pixels on which further features may be looked for when the others are too few; nothing if
+  /// there are none.
+  [[nodiscard]] virtual std::optional<DoubtedPixels> doubted(const FrameDynamics& dynamics) const;
 
   /// The features, which are all off `dynamics.excluded`, that may be used for the pose. The next
   /// frame is compared with all of them.

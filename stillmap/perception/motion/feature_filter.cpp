@@ -152,6 +152,7 @@ bool FeatureFilter::dropped(FeatureVerdict verdict) const {
       return drops_missing_depth_;
     case FeatureVerdict::kStable:
     case FeatureVerdict::kStaticInBox:
+    case FeatureVerdict::kDoubted:
       break;
   }
   return false;

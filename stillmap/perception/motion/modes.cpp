@@ -42,6 +42,7 @@ constexpr std::array kModes = {
         .interaction = true,
         .jumps = JumpRule::kWarpedFrames,
         .motion = true,
+        .doubts = true,
         .depth_stability = DepthStabilityRule::kConfigured,
         .static_matches = StaticMatchRule::kConfigured,
         .cloud = {.edges = "growing", .islands = "off", .free_space = "on"}},

@@ -166,6 +166,8 @@ void MotionEstimator::decide(Track& track, bool cut_off, double vacated_share) c
   const double error = config_.certainty * track.velocity.error;
   const bool left = vacated_share >= config_.vacated_share;
   track.known = true;
+  track.has_left = track.has_left || left;
+  ++track.stood;
   if (left && speed > factor * config_.moving_m_s + error) {
     track.moving = true;
     track.calm = 0;
@@ -246,6 +248,14 @@ std::vector<TrackId> MotionEstimator::moving() const {
   std::vector<TrackId> ids;
   for (const Track& track : tracks_) {
     if (track.moving) ids.push_back(track.id);
+  }
+  return ids;
+}
+
+std::vector<TrackId> MotionEstimator::standing() const {
+  std::vector<TrackId> ids;
+  for (const Track& track : tracks_) {
+    if (!track.has_left && track.stood >= config_.standing_frames) ids.push_back(track.id);
   }
   return ids;
 }

@@ -28,6 +28,7 @@ struct MotionStateConfig {
   int calm_frames = 5;
   double vacated_share = 0.15;
   double vacated_m = 0.05;
+  int standing_frames = 30;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -67,6 +68,13 @@ struct MotionStateConfig {
         "vacated_m",
         self.vacated_m,
         FieldInfo{"change of depth that shows a pixel vacated, in addition to noise", "m", 0, 10});
+    visit("standing_frames",
+          self.standing_frames,
+          FieldInfo{"number of frames after which an object that has stood where it was first seen "
+                    "is static for the pose",
+                    "frames",
+                    1,
+                    100000});
   }
 };
 
@@ -103,6 +111,9 @@ class MotionEstimator {
 
   /// The tracks that move in the last frame, by number.
   [[nodiscard]] std::vector<TrackId> moving() const;
+  /// The tracks that have stood still against the map for long, and ever since they were first
+  /// seen; by number.
+  [[nodiscard]] std::vector<TrackId> standing() const;
 
  private:
   struct Position {
@@ -121,7 +132,9 @@ class MotionEstimator {
     std::deque<Position> positions;
     RobustVelocity velocity;
     bool moving = false, known = false;
-    int calm = 0;  // number of consecutive slow frames
+    int calm = 0;           // number of consecutive slow frames
+    int stood = 0;          // number of frames in which its surface was where it had been
+    bool has_left = false;  // its first place, or a part of it
     double last_seen_s = 0;
   };
 

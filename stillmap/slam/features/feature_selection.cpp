@@ -16,6 +16,11 @@ std::vector<Value> selected(const std::vector<Value>& values, std::span<const st
   return result;
 }
 
+template <class Value>
+void append(std::vector<Value>& values, const std::vector<Value>& more) {
+  values.insert(values.end(), more.begin(), more.end());
+}
+
 }  // namespace
 
 Features select_features(const Features& features,
@@ -31,6 +36,26 @@ Features select_features(const Features& features,
   result.level = selected(features.level, keep);
   result.angle_deg = selected(features.angle_deg, keep);
   result.descriptors = selected(features.descriptors, keep);
+  if (!features.trust.empty()) result.trust = selected(features.trust, keep);
+  result.grid = FeatureGrid(result.px, camera.width_px, camera.height_px);
+  return result;
+}
+
+Features joined_features(const Features& a, const Features& b, const CameraModel& camera) {
+  Features result = a;
+  append(result.raw_px, b.raw_px);
+  append(result.ideal_px, b.ideal_px);
+  append(result.sensor_depth_m, b.sensor_depth_m);
+  append(result.px, b.px);
+  append(result.depth_m, b.depth_m);
+  append(result.level, b.level);
+  append(result.angle_deg, b.angle_deg);
+  append(result.descriptors, b.descriptors);
+  if (!a.trust.empty() || !b.trust.empty()) {
+    result.trust.resize(a.size(), 1.0F);
+    append(result.trust, b.trust);
+    result.trust.resize(result.size(), 1.0F);
+  }
   result.grid = FeatureGrid(result.px, camera.width_px, camera.height_px);
   return result;
 }

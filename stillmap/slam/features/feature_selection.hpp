@@ -14,4 +14,9 @@ namespace stillmap {
                                        std::span<const std::uint8_t> keep,
                                        const CameraModel& camera);
 
+/// The features of both, those of `a` first; those without trust are trusted.
+[[nodiscard]] Features joined_features(const Features& a,
+                                       const Features& b,
+                                       const CameraModel& camera);
+
 }  // namespace stillmap

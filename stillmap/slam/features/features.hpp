@@ -12,6 +12,9 @@
 
 namespace stillmap {
 
+/// Features of less trust are matched with known landmarks only: they make none.
+inline constexpr float kTrustOfLandmarks = 0.5F;
+
 /// The point features of one frame, as parallel arrays of equal length. Never changed after
 /// construction.
 struct Features {
@@ -24,9 +27,12 @@ struct Features {
   std::vector<std::uint8_t> level;  ///< of the image pyramid; 0 is the full resolution
   std::vector<float> angle_deg;     ///< orientation, [0, 360)
   std::vector<Descriptor> descriptors;
+  /// How likely each is on something static, in (0, 1]: its weight in the pose. Empty: all are.
+  std::vector<float> trust;
   FeatureGrid grid;  ///< over px
 
   [[nodiscard]] std::size_t size() const { return px.size(); }
+  [[nodiscard]] float trust_of(std::size_t i) const { return trust.empty() ? 1.0F : trust[i]; }
 };
 
 using FeaturesPtr = std::shared_ptr<const Features>;

@@ -141,7 +141,7 @@ void OrbExtractor::place_in_space(const DepthImage& depth, Features& features) c
   features.grid = FeatureGrid(features.px, camera_.width_px, camera_.height_px);
 }
 
-Features OrbExtractor::extract(ImageCorners corners,
+Features OrbExtractor::extract(const ImageCorners& corners,
                                const DepthImage& depth,
                                const Mask& excluded) const {
   STILLMAP_CHECK(depth.mat.cols == camera_.width_px && depth.mat.rows == camera_.height_px);
@@ -149,9 +149,10 @@ Features OrbExtractor::extract(ImageCorners corners,
   STILLMAP_CHECK(corners.levels.size() == levels_.size());
   Features features;
   for (std::size_t i = 0; i < levels_.size(); ++i) {
-    ImageCorners::Level& level = corners.levels[i];
-    if (!excluded.empty()) remove_excluded(level.corners, excluded.mat, level.image.size());
-    append(i, level, spread_evenly(std::move(level.corners), levels_[i].feature_count), features);
+    const ImageCorners::Level& level = corners.levels[i];
+    std::vector<cv::KeyPoint> usable = level.corners;
+    if (!excluded.empty()) remove_excluded(usable, excluded.mat, level.image.size());
+    append(i, level, spread_evenly(std::move(usable), levels_[i].feature_count), features);
   }
   place_in_space(depth, features);
   return features;

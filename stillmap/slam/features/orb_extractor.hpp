@@ -66,7 +66,7 @@ class OrbExtractor {
   /// Features at the best corners, with ideal and raw pixels and the depth of `depth`, of the
   /// camera's size, at the raw pixel. None at a pixel of `excluded`; the rest of the image then
   /// gets the whole number of features.
-  [[nodiscard]] Features extract(ImageCorners corners,
+  [[nodiscard]] Features extract(const ImageCorners& corners,
                                  const DepthImage& depth,
                                  const Mask& excluded = {}) const;
 

@@ -79,8 +79,7 @@ TEST(OrbExtractor, CornersFoundAheadOfOtherImagesGiveTheSameBits) {
     cv::Mat1b excluded(240, 320, std::uint8_t{0});
     excluded.colRange(50 * static_cast<int>(seed), 200).setTo(1);
     const Features a = extract(image, excluded);
-    const Features b =
-        extractor.extract(std::move(ahead[seed - 1]), no_depth(image), Mask(excluded));
+    const Features b = extractor.extract(ahead[seed - 1], no_depth(image), Mask(excluded));
     EXPECT_GT(a.size(), 100U);
     EXPECT_EQ(a.raw_px, b.raw_px);
     EXPECT_EQ(a.descriptors, b.descriptors);

@@ -48,9 +48,10 @@ NormalEquations linearize(const CameraModel& camera,
     if (p_camera.z() < kMinPointDepth) continue;
     const Eigen::Vector3d r = reprojection_residual(camera, m, p_camera);
     const Huber huber(r.squaredNorm(), chi2_bound(m));
-    const double weight = robust ? huber.weight : 1.0;
+    const double trust = observations[i].trust;
+    const double weight = trust * (robust ? huber.weight : 1.0);
     add_to_pose(point_equations(camera, m, p_camera, r, weight), p_camera, eq.H, eq.g);
-    eq.cost += robust ? huber.cost : r.squaredNorm();
+    eq.cost += trust * (robust ? huber.cost : r.squaredNorm());
   }
   return eq;
 }
@@ -63,7 +64,8 @@ double total_cost(const CameraModel& camera,
   double cost = 0;
   for (std::size_t i = 0; i < observations.size(); ++i) {
     if (inlier[i] == 0) continue;
-    cost += loss(squared_error(camera, T, observations[i]), observations[i].measurement, robust);
+    const PoseObservation& o = observations[i];
+    cost += o.trust * loss(squared_error(camera, T, o), o.measurement, robust);
   }
   return cost;
 }

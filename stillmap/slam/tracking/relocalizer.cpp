@@ -55,8 +55,8 @@ Relocalizer::Matches Relocalizer::agreeing(const Matches& matches,
                                            const Eigen::Isometry3d& T_camera_world) const {
   Matches kept;
   std::ranges::copy_if(matches, std::back_inserter(kept), [&](const Match& match) {
-    const auto& [p_world, measurement] = match.observation;
-    return near_measurement(camera_, measurement, T_camera_world * p_world);
+    const PoseObservation& seen = match.observation;
+    return near_measurement(camera_, seen.measurement, T_camera_world * seen.p_world);
   });
   return kept;
 }

@@ -36,24 +36,27 @@ TrackedFrame Tracker::start(const RgbdFrame& frame, FeaturesPtr features) {
 TrackedFrame Tracker::track(const RgbdFrame& frame,
                             Features features,
                             const Map& map,
-                            const PlaceIndex& places) {
-  TrackedFrame tracked;
-  tracked.id = frame.id;
-  tracked.stamp_s = frame.stamp.seconds;
-  tracked.landmarks.assign(features.size(), LandmarkId{});
-  if (last_) {
-    tracked.reference = last_->reference;
-    const double since_last_s = tracked.stamp_s - last_->stamp_s;
-    const CameraVelocity expected = mean_velocity(motion_.predict(since_last_s), since_last_s);
-    features = undo_rolling_shutter(std::move(features), camera_, readout_s(), expected);
+                            const PlaceIndex& places,
+                            const MoreFeatures& more) {
+  TrackedFrame begun;
+  begun.id = frame.id;
+  begun.stamp_s = frame.stamp.seconds;
+  if (last_) begun.reference = last_->reference;
+  Attempt found = attempt(begun, std::move(features), map, places);
+  if (more && found.inliers() < config_.enough_inliers) {
+    if (std::optional<Features> all = more(found.features)) {
+      Attempt second = attempt(begun, *std::move(all), map, places);
+      if (confirms(second, found)) found = std::move(second);
+    }
   }
-  std::optional<PoseFromMatches> pose = find_pose(tracked, features, map, places);
-  if (pose) {
-    pose = track_local_map(tracked, features, *pose, map);
-    if (!lost_) pose = refine_shutter(tracked, features, *pose, map);
-    tracked.inliers = static_cast<int>(pose->inliers.size());
+  if (!lost_ && !found.pose) {
+    locate(found, relocalize(found.frame, found.features, map, places), map);
   }
-  tracked.features = std::make_shared<const Features>(std::move(features));
+  auto& [tracked, used, pose] = found;
+  if (pose && !lost_) pose = refine_shutter(tracked, used, *pose, map);
+  tracked.inliers = found.inliers();
+  tracked.landmarks.assign(used.size(), LandmarkId{});
+  tracked.features = std::make_shared<const Features>(std::move(used));
   if (tracked.inliers < config_.min_inliers) {
     lost_ = true;
     motion_.reset();
@@ -66,15 +69,44 @@ TrackedFrame Tracker::track(const RgbdFrame& frame,
   return tracked;
 }
 
-std::optional<Tracker::PoseFromMatches> Tracker::find_pose(const TrackedFrame& frame,
-                                                           const Features& features,
-                                                           const Map& map,
-                                                           const PlaceIndex& places) const {
-  if (!lost_) {
-    if (auto pose = track_last_frame(frame, features, map)) return pose;
-    if (auto pose = track_reference(frame, features, map)) return pose;
+// By the frame before, or, while lost, by relocalisation.
+Tracker::Attempt Tracker::attempt(const TrackedFrame& frame,
+                                  Features features,
+                                  const Map& map,
+                                  const PlaceIndex& places) const {
+  if (last_) {
+    const double since_last_s = frame.stamp_s - last_->stamp_s;
+    const CameraVelocity expected = mean_velocity(motion_.predict(since_last_s), since_last_s);
+    features = undo_rolling_shutter(std::move(features), camera_, readout_s(), expected);
   }
-  return relocalize(frame, features, map, places);
+  Attempt result{frame, std::move(features), std::nullopt};
+  locate(
+      result,
+      lost_ ? relocalize(frame, result.features, map, places) : follow(frame, result.features, map),
+      map);
+  return result;
+}
+
+void Tracker::locate(Attempt& attempt,
+                     const std::optional<PoseFromMatches>& start,
+                     const Map& map) const {
+  if (start) attempt.pose = track_local_map(attempt.frame, attempt.features, *start, map);
+}
+
+// Features that move together can outnumber the static ones: these must not lose their landmarks.
+bool Tracker::confirms(const Attempt& with_more, const Attempt& without) const {
+  if (with_more.inliers() <= without.inliers()) return false;
+  const auto shared = std::ranges::count_if(with_more.pose->inliers, [&](const Match& match) {
+    return match.feature < without.features.size();
+  });
+  return static_cast<double>(shared) >= config_.confirmed_share * without.inliers();
+}
+
+std::optional<Tracker::PoseFromMatches> Tracker::follow(const TrackedFrame& frame,
+                                                        const Features& features,
+                                                        const Map& map) const {
+  if (auto pose = track_last_frame(frame, features, map)) return pose;
+  return track_reference(frame, features, map);
 }
 
 std::optional<Tracker::PoseFromMatches> Tracker::relocalize(const TrackedFrame& frame,
@@ -143,7 +175,9 @@ Tracker::PoseFromMatches Tracker::optimize(const Features& features,
   std::vector<PoseObservation> observations;
   observations.reserve(matches.size());
   for (const Match& match : matches) {
-    observations.push_back({match.p_world, measure_(features, match.feature)});
+    observations.push_back({match.p_world,
+                            measure_(features, match.feature),
+                            static_cast<double>(features.trust_of(match.feature))});
   }
   const PoseEstimate estimate = optimize_pose(camera_, initial, observations);
   PoseFromMatches result{estimate.T_camera_world, {}};
@@ -165,7 +199,8 @@ Tracker::Matches Tracker::match_last_frame(const Features& features,
   std::unordered_set<LandmarkId> known;  // landmarks of two features may have been merged since
   for (std::uint32_t i = 0; i < last.size(); ++i) {
     const LandmarkId id = map.resolve(last_->landmarks[i]);
-    if (id.valid() ? !known.insert(id).second : !measure_.has_depth(last, i)) continue;
+    const bool usable = measure_.has_depth(last, i) && last.trust_of(i) >= kTrustOfLandmarks;
+    if (id.valid() ? !known.insert(id).second : !usable) continue;
     const Eigen::Vector3d p_world =
         id.valid() ? map.landmark(id).p_world
                    : T_world_last * camera_.unproject(last.px[i].cast<double>(),

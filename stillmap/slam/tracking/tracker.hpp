@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <optional>
 
 #include "stillmap/core/fields.hpp"
@@ -25,6 +26,8 @@ struct TrackerConfig {
   int min_frame_matches = 20;
   int min_frame_inliers = 10;
   int min_inliers = 30;
+  int enough_inliers = 500;
+  double confirmed_share = 0.6;
   MatchRules frame_match{.max_distance = 90};
   MatchRules reference_match{.max_distance = 60, .max_ratio = 0.7};
   MatchRules map_match{.max_distance = 90, .max_ratio = 0.8};
@@ -62,6 +65,22 @@ struct TrackerConfig {
     visit.group("reference_match", self.reference_match);
     visit.group("map_match", self.map_match);
     visit.group("shutter", self.shutter);
+    visit("enough_inliers",
+          self.enough_inliers,
+          FieldInfo{
+              "number of matched landmarks below which features on dynamic objects that are not "
+              "known to move are used, too",
+              "",
+              0,
+              10000});
+    visit(
+        "confirmed_share",
+        self.confirmed_share,
+        FieldInfo{"share of the matched landmarks elsewhere that must agree with a pose found with "
+                  "such features",
+                  "",
+                  0,
+                  1});
     visit("min_inliers",
           self.min_inliers,
           common_setting(FieldInfo{
@@ -72,13 +91,18 @@ struct TrackerConfig {
   }
 };
 
+/// Gives the features of a frame again, followed by further ones that are less certain to be
+/// static; nothing where there are none.
+using MoreFeatures = std::function<std::optional<Features>(const Features&)>;
+
 /// Tracks the camera's pose frame by frame against a map, which it only reads.
 ///
 /// Each frame is first matched to the previous one under constant velocity; if that fails, with a
 /// wider search, then with the reference key frame by appearance. Then it is matched to the local
 /// map: the landmarks of the key frames that share landmarks with it. While lost, it tries to
-/// relocalise in every frame. Poses are kept relative to key frames, so that they follow changes of
-/// the map.
+/// relocalise in every frame. Where the features match too few landmarks, further ones may be asked
+/// for; the landmarks matched without them must then agree with the pose. Poses are kept relative
+/// to key frames, so that they follow changes of the map.
 class Tracker {
  public:
   Tracker(const TrackerConfig& config,
@@ -95,7 +119,8 @@ class Tracker {
   [[nodiscard]] TrackedFrame track(const RgbdFrame& frame,
                                    Features features,
                                    const Map& map,
-                                   const PlaceIndex& places);
+                                   const PlaceIndex& places,
+                                   const MoreFeatures& more = {});
 
   /// The predicted pose at a time soon after the last frame; nothing while lost and before the
   /// first frame.
@@ -120,10 +145,22 @@ class Tracker {
     Matches inliers;
   };
 
-  [[nodiscard]] std::optional<PoseFromMatches> find_pose(const TrackedFrame& frame,
-                                                         const Features& features,
-                                                         const Map& map,
-                                                         const PlaceIndex& places) const;
+  struct Attempt {
+    TrackedFrame frame;
+    Features features;
+    std::optional<PoseFromMatches> pose;
+    [[nodiscard]] int inliers() const { return pose ? static_cast<int>(pose->inliers.size()) : 0; }
+  };
+
+  [[nodiscard]] Attempt attempt(const TrackedFrame& frame,
+                                Features features,
+                                const Map& map,
+                                const PlaceIndex& places) const;
+  [[nodiscard]] bool confirms(const Attempt& with_more, const Attempt& without) const;
+  void locate(Attempt& attempt, const std::optional<PoseFromMatches>& start, const Map& map) const;
+  [[nodiscard]] std::optional<PoseFromMatches> follow(const TrackedFrame& frame,
+                                                      const Features& features,
+                                                      const Map& map) const;
   [[nodiscard]] std::optional<PoseFromMatches> track_last_frame(const TrackedFrame& frame,
                                                                 const Features& features,
                                                                 const Map& map) const;
