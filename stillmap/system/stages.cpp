@@ -187,7 +187,7 @@ FrameResult System::Stages::remember(const Outcome& outcome) {
   result.network_mask = judged.judged.mask.raw;
   result.extended_mask = judged.judged.mask.extended;
   result.depth_jumps = Mask(judged.judged.mask.jumps.mat);
-  result.excluded = judged.excluded;
+  result.excluded = judged.excluded_from_pose;
 
   lost_frames = has_pose(tracked) ? 0 : lost_frames + 1;
   if (!has_pose(tracked)) {
@@ -235,8 +235,8 @@ void System::Stages::take_objects(FrameObjects objects) {
   const FrameDynamics judged =
       dynamics->judge(frame, std::move(objects), measured, T_odometry_camera);
   (void)dynamics->with_motion(frame, T_odometry_camera, judged);  // for the frames to come
-  const TrackedFrame tracked =
-      without_excluded_features(awaiting->tracked, judged.excluded, back_end.map(), camera);
+  const TrackedFrame tracked = without_excluded_features(
+      awaiting->tracked, judged.excluded_from_pose, back_end.map(), camera);
   const bool is_keyframe = wants_keyframe(config.keyframe, tracked, since_keyframe, back_end.map());
   if (is_keyframe) {
     back_end.refer_to_keyframe(awaiting->record, insert_keyframe(frame, tracked));

@@ -8,7 +8,9 @@
 #include <opencv2/core.hpp>
 
 #include "stillmap/core/error.hpp"
+#include "stillmap/perception/detections/class_names.hpp"
 #include "stillmap/perception/motion/interaction.hpp"
+#include "stillmap/perception/objects/object_size.hpp"
 
 namespace stillmap {
 namespace {
@@ -83,7 +85,11 @@ Mask DynamicMask::all_without(const std::array<bool, 256>& left_out) const {
 DynamicObjects::DynamicObjects(const DynamicObjectsConfig& config,
                                const CameraModel& camera,
                                const DynamicsMode& mode)
-    : config_(config), mode_(mode), categories_(config.categories), warper_(camera) {
+    : config_(config),
+      mode_(mode),
+      categories_(config.categories),
+      camera_(camera),
+      warper_(camera) {
   if (mode.extension == ExtensionRule::kBox) config_.extension.variant = "paper";
 }
 
@@ -187,13 +193,23 @@ ObjectMask DynamicObjects::extended_mask(const DepthImage& depth,
     const MaskArea& area = measured.areas[static_cast<std::size_t>(id)];
     const ObjectView view{depth, objects.mask, id, object.detection.box};
     // A box in place of a mask holds all that is known already.
-    const PixelPatch patch =
+    PixelPatch patch =
         object.mask_source == MaskSource::kBox
             ? mask_patch(view, area)
             : extend_mask(view, area, measured.depths[i], config_.extension, known_static);
+    if (outgrows_its_class(object, patch, depth)) patch = mask_patch(view, area);
     paint(patch, static_cast<std::uint8_t>(id), extended);
   }
   return ObjectMask(extended);
+}
+
+// Then it has grown over furniture or a wall. Fan 2020 knows no such bound.
+bool DynamicObjects::outgrows_its_class(const TrackedObject& object,
+                                        const PixelPatch& patch,
+                                        const DepthImage& depth) const {
+  return mode_.extension == ExtensionRule::kConfigured && config_.extension.bounded &&
+         silhouette_m2(patch, depth, camera_) >
+             largest_silhouette_m2(coco_name(object.detection.class_name));
 }
 
 JumpImage DynamicObjects::jumps(const DepthImage& depth,

@@ -128,6 +128,9 @@ class DynamicObjects {
                                          const MeasuredObjects& measured,
                                          const std::vector<ObjectState>& states,
                                          const HalfDepth& known_static) const;
+  [[nodiscard]] bool outgrows_its_class(const TrackedObject& object,
+                                        const PixelPatch& patch,
+                                        const DepthImage& depth) const;
   [[nodiscard]] JumpImage jumps(const DepthImage& depth,
                                 std::span<const PreviousDepth> previous,
                                 const HalfDepth& expected) const;
@@ -135,6 +138,7 @@ class DynamicObjects {
   DynamicObjectsConfig config_;
   DynamicsMode mode_;  // its row of the table
   CategoryTable categories_;
+  CameraModel camera_;
   DepthWarper warper_;
 };
 

@@ -54,6 +54,24 @@ struct Office {
   }
 };
 
+// Somebody's mask on a wall: nothing in depth tells where the person ends.
+TEST(DynamicObjects, AMaskDoesNotGrowBeyondTheSizeOfItsClass) {
+  Office office;
+  office.depth.mat.setTo(2.5F);
+  office.objects.objects.resize(1);
+  office.objects.mask.mat.setTo(0);
+  office.objects.mask.mat(cv::Rect(200, 50, 260, 400)).setTo(1);  // 1.2 m by 1.9 m
+  office.objects.objects[0].detection.box = {200, 50, 460, 450};
+  DynamicObjectsConfig config;
+  const auto extended = [&] {
+    const DynamicObjects objects(config, builtin_camera("tum_fr3"), dynamics_mode("full"));
+    return cv::countNonZero(objects.judge(office.depth, office.objects, {}).mask.extended.mat);
+  };
+  EXPECT_EQ(extended(), 260 * 400);
+  config.extension.bounded = false;
+  EXPECT_GT(extended(), 1.2 * 260 * 400);
+}
+
 std::vector<StateReason> reasons(const DynamicsResult& result) {
   std::vector<StateReason> found;
   for (const ObjectState& state : result.states) found.push_back(state.reason);

@@ -143,24 +143,35 @@ FrameDynamics JudgingStage::judge(
   dynamics.judged = objects_.judge(
       frame.depth, objects, measured, previous(T_odometry_camera_expected), motions_.moving());
   dynamics.objects = std::move(objects);
-  std::array<bool, 256> standing{};
-  if (doubts_) {
-    dynamics.trust = trust_in(dynamics.objects, dynamics.judged.states);
-    standing = objects_among(dynamics.judged.states, motions_.standing());
+  const DynamicMask& mask = dynamics.judged.mask;
+  dynamics.excluded = widened(mask.all(), config_.feature_margin_px);
+  dynamics.excluded_from_pose = dynamics.excluded;
+  if (!doubts_) return dynamics;
+  const std::vector<ObjectState>& states = dynamics.judged.states;
+  dynamics.trust = trust_in(dynamics.objects, states);
+  std::array<bool, 256> resting = objects_among(states, motions_.standing());
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    resting[i + 1] = resting[i + 1] && states[i].category != Category::kDynamic;
   }
-  dynamics.excluded =
-      widened(dynamics.judged.mask.all_without(standing), config_.feature_margin_px);
+  if (std::ranges::find(resting, true) != resting.end()) {
+    dynamics.excluded_from_pose = widened(mask.all_without(resting), config_.feature_margin_px);
+  }
   return dynamics;
 }
 
-// A network that is sure is mostly right about what a thing is, not about whether it moves.
+// A network that is sure is mostly right about what a thing is, not about whether it moves. What
+// has stood still since it was first seen is trusted more; people sway, so that they are not
+// trusted as things are.
 std::vector<float> JudgingStage::trust_in(const FrameObjects& objects,
                                           const std::vector<ObjectState>& states) const {
   const std::array<bool, 256> moving = objects_among(states, motions_.moving());
+  const std::array<bool, 256> standing = objects_among(states, motions_.standing());
   std::vector<float> trust;
   for (std::size_t i = 0; i < states.size(); ++i) {
     const float score = std::clamp(objects.objects[i].detection.score, 0.0F, 1.0F);
-    trust.push_back((moving[i + 1] ? kTrustOfMovers : 1.0F) * (1.0F - kMostDoubt * score));
+    const float by_score = 1.0F - kMostDoubt * score;
+    const float by_motion = moving[i + 1] ? kTrustOfMovers * by_score : by_score;
+    trust.push_back(standing[i + 1] ? std::max(by_score, kTrustOfLandmarks) : by_motion);
   }
   return trust;
 }
@@ -180,7 +191,7 @@ std::optional<DoubtedPixels> JudgingStage::doubted(const FrameDynamics& dynamics
   DoubtedPixels pixels{Mask(cv::Mat1b(moves.mat.size())), cv::Mat1f(moves.mat.size())};
   for (int row = 0; row < moves.mat.rows; ++row) {
     for (int x = 0; x < moves.mat.cols; ++x) {
-      const bool doubted = dynamics.excluded.covers(row, x) && !moves.covers(row, x);
+      const bool doubted = dynamics.excluded_from_pose.covers(row, x) && !moves.covers(row, x);
       pixels.others.mat(row, x) = doubted ? 0 : 255;
       pixels.trust(row, x) = trust[dynamics.judged.mask.extended.mat(row, x)];
     }

@@ -65,9 +65,10 @@ struct DynamicsConfig {
 struct FrameDynamics {
   FrameObjects objects;
   DynamicsResult judged;  ///< `judged.states` in the order of the objects
-  /// Pixels that no feature may have: `judged.mask`, without what has stood still since it was
-  /// first seen, and a margin.
-  Mask excluded;
+  Mask excluded;  ///< pixels that are not static surface for the map: `judged.mask` and a margin
+  /// Pixels that no feature may have: the same without what has stood still since it was first
+  /// seen.
+  Mask excluded_from_pose;
   /// Per object, how likely it is static, in [0, 1]; 0 for what is known to move. Empty: the mode
   /// doubts nothing.
   std::vector<float> trust = {};

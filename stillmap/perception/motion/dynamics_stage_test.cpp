@@ -52,6 +52,81 @@ Eigen::Isometry3d turned(double degrees) {
                    Eigen::Vector3d::Zero());
 }
 
+// The person's mask and nobody there: the wall stands where it has stood.
+class DoubtedPerson : public testing::Test {
+ protected:
+  FrameDynamics look(float score, const std::string& name = "person") {
+    FrameObjects objects = person_found();
+    objects.objects[0].detection.score = score;
+    objects.objects[0].detection.class_name = name;
+    objects.objects[0].track = TrackId(3);
+    objects.stamp.seconds = ++frame_ / 30.0;
+    const RgbdFrame frame = wall(false);
+    const FrameDynamics dynamics =
+        stage_->judge(frame, objects, stage_->measure(frame, objects), turned(0));
+    (void)stage_->with_motion(frame, turned(0), dynamics);
+    stage_->remember(frame, turned(0), dynamics);
+    return dynamics;
+  }
+
+  int frame_ = 0;
+  std::unique_ptr<DynamicsStage> stage_ = make_dynamics_stage({}, small_camera(), 0);
+};
+
+TEST_F(DoubtedPerson, IsDoubtedTheMoreTheLessTheNetworkIsSure) {
+  float before = 1;
+  for (const float score : {0.1F, 0.5F, 0.9F}) {
+    const std::optional<DoubtedPixels> doubted = stage_->doubted(look(score));
+    ASSERT_TRUE(doubted);
+    EXPECT_FALSE(doubted->others.covers(60, 80));  // on the person
+    EXPECT_TRUE(doubted->others.covers(60, 20));   // on the wall, which has features already
+    EXPECT_LT(doubted->trust(60, 80), before);
+    EXPECT_GT(doubted->trust(60, 80), 0);
+    before = doubted->trust(60, 80);
+  }
+}
+
+TEST_F(DoubtedPerson, IsTrustedMoreWhenItHasStoodThereForLong) {
+  const float at_first = stage_->doubted(look(0.9F))->trust(60, 80);
+  FrameDynamics dynamics;
+  for (int k = 0; k < 60; ++k) dynamics = look(0.9F);
+  EXPECT_GT(stage_->doubted(dynamics)->trust(60, 80), 2 * at_first);
+  EXPECT_TRUE(dynamics.excluded_from_pose.covers(60, 80));  // people sway
+}
+
+TEST_F(DoubtedPerson, AThingThatHasStoodThereIsStaticForThePoseNotForTheMap) {
+  DynamicsConfig config;
+  config.objects.categories = {.dynamic = "dog", .potentially_dynamic = "person"};
+  config.motion.standing_frames = 20;
+  stage_ = make_dynamics_stage(config, small_camera(), 0);
+  const RgbdFrame frame = wall(false);
+  FrameDynamics dynamics;
+  for (int k = 0; k < 60; ++k) {
+    FrameObjects objects = person_found();
+    objects.objects.push_back({{2, "dog", 1.0F, {60, 20, 100, 110}}, TrackId(1), {}, {}});
+    objects.stamp.seconds = k / 30.0;
+    dynamics = stage_->judge(frame, objects, stage_->measure(frame, objects), turned(0));
+    ASSERT_TRUE(dynamics.judged.states[0].dynamic) << "the dog is at it";
+    (void)stage_->with_motion(frame, turned(0), dynamics);
+    stage_->remember(frame, turned(0), dynamics);
+    EXPECT_EQ(dynamics.excluded_from_pose.covers(60, 80), k < 4 + 20) << k;
+  }
+  EXPECT_TRUE(dynamics.excluded.covers(60, 80));
+}
+
+TEST(DynamicsStage, OtherModesDoubtNothing) {
+  for (const char* mode : {"off", "mask", "paper"}) {
+    DynamicsConfig config;
+    config.mode = mode;
+    const std::unique_ptr<DynamicsStage> stage = make_dynamics_stage(config, small_camera(), 0);
+    const RgbdFrame frame = wall(true);
+    const FrameObjects objects = person_found();
+    const FrameDynamics dynamics =
+        stage->judge(frame, objects, stage->measure(frame, objects), turned(0));
+    EXPECT_FALSE(stage->doubted(dynamics)) << mode;
+  }
+}
+
 class DynamicsStageWhenLost : public testing::Test {
  protected:
   [[nodiscard]] FrameDynamics judge(const RgbdFrame& frame,

@@ -12,6 +12,7 @@ namespace stillmap {
 
 struct MaskExtensionConfig {
   bool enabled = true;
+  bool bounded = true;
   std::string variant = "connected";
   double mad_factor = 3.0;
   int whole_box_px = 5000;
@@ -32,6 +33,10 @@ struct MaskExtensionConfig {
     visit("enabled",
           self.enabled,
           FieldInfo{"whether the masks of dynamic objects are extended by depth"});
+    visit("bounded",
+          self.bounded,
+          FieldInfo{"connected: whether an extended mask that is larger than objects of its class "
+                    "are is replaced by the network's"});
     visit("variant",
           self.variant,
           FieldInfo{"rule of extension. paper: Fan 2020, Alg. 1; connected: pixels connected to "

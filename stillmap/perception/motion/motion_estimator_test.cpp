@@ -134,6 +134,23 @@ TEST(MotionEstimator, PushedThenRollingThenStill) {
   EXPECT_EQ(seen[55], MotionState::kStill);
 }
 
+TEST(MotionEstimator, WhatHasStoodSinceItWasFirstSeenStands) {
+  MotionStateConfig config;
+  config.standing_frames = 20;
+  MotionEstimator states(config, builtin_camera("tum_fr3"));
+  for (int i = 0; i < 60; ++i) {
+    (void)feed(states, look(i, {0.1, 0.0, 2.5}, camera_at(i)));
+    EXPECT_EQ(states.standing().size(), i < 4 + 19 ? 0U : 1U) << i;
+  }
+  Eigen::Vector3d place(0.1, 0.0, 2.5);
+  for (int i = 60; i < 160; ++i) {  // it goes away, and stands elsewhere for long
+    if (i < 80) place.x() -= 0.6 / 30.0;
+    (void)feed(states, look(i, place, camera_at(i)));
+    if (i <= 70) continue;
+    EXPECT_TRUE(states.standing().empty()) << i;
+  }
+}
+
 TEST(MotionEstimator, AFlickeringMaskIsNoMotion) {
   MotionEstimator states({}, builtin_camera("tum_fr3"));
   for (int i = 0; i < 60; ++i) {

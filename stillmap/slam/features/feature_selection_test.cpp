@@ -49,5 +49,18 @@ TEST(FeatureSelection, NoneMayBeChosen) {
   EXPECT_EQ(select_features(three_features(), keep, builtin_camera("tum_fr3")).size(), 0U);
 }
 
+TEST(JoinedFeatures, AreThoseOfBothWithTheirTrust) {
+  Features doubted = three_features();
+  doubted.trust = {0.1F, 0.2F, 0.3F};
+  const Features all = joined_features(three_features(), doubted, builtin_camera("tum_fr3"));
+  ASSERT_EQ(all.size(), 6U);
+  EXPECT_EQ(all.trust, (std::vector<float>{1, 1, 1, 0.1F, 0.2F, 0.3F}));
+  EXPECT_EQ(all.raw_px[5], Eigen::Vector2f(300, 10));
+  EXPECT_EQ(all.descriptors[4][0], 1U);
+  std::vector<std::uint32_t> near;
+  all.grid.visit_near({300, 30}, 5, [&](std::uint32_t i) { near.push_back(i); });
+  EXPECT_EQ(near, (std::vector<std::uint32_t>{2, 5}));
+}
+
 }  // namespace
 }  // namespace stillmap

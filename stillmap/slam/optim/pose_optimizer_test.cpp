@@ -34,6 +34,21 @@ TEST(PoseOptimizer, RecoversThePoseFromExactData) {
   }
 }
 
+// An observation that is given twice, trusted by half each time, counts once.
+TEST(PoseOptimizer, TrustIsAWeight) {
+  const PoseScene scene = make_pose_scene(7, 60, Depths::kSome, 0.5);
+  PoseScene halves = scene;
+  for (std::size_t i = 0; i < 30; ++i) {
+    halves.observations[i].trust = 0.5;
+    halves.observations.push_back(halves.observations[i]);
+  }
+  const Eigen::Isometry3d start = moved(scene.T_camera_world, 8);
+  const Eigen::Isometry3d whole = optimize(scene, start).T_camera_world;
+  EXPECT_LT(pose_distance(optimize(halves, start).T_camera_world, whole), 1e-7);
+  for (PoseObservation& o : halves.observations) o.trust = 1;
+  EXPECT_GT(pose_distance(optimize(halves, start).T_camera_world, whole), 1e-5);
+}
+
 TEST(PoseOptimizer, ThreePointsWithDepthAreEnough) {
   const PoseScene scene = make_pose_scene(5, 3, Depths::kAll, 0);
   const PoseEstimate estimate = optimize(scene, moved(scene.T_camera_world, 6));

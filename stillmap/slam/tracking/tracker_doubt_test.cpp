@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// Features that are only doubted to be static: asked for in need, believed when the others agree.
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "stillmap/slam/features/feature_selection.hpp"
+#include "stillmap/slam/tracking/tracker.hpp"
+#include "tests/support/simulated_walk.hpp"
+
+namespace stillmap {
+namespace {
+
+/// Each `every`th feature, or all others.
+Features part_of(const Features& features, std::size_t every, bool others) {
+  std::vector<std::uint8_t> keep(features.size());
+  for (std::size_t i = 0; i < keep.size(); ++i) keep[i] = (i % every == 0) != others ? 1 : 0;
+  return select_features(features, keep, simulated_camera());
+}
+
+TEST(Tracker, UsesDoubtedFeaturesWhereTheOthersAreTooFew) {
+  constexpr std::size_t kEvery = 50;  // leaves less than min_inliers
+  for (const bool may : {true, false}) {
+    Walk walk(path, without_calibration());
+    int tracked = 0;
+    for (int k = 1; k <= 30; ++k) {
+      const Features seen = walk.observe(k, kNoise).features;
+      const MoreFeatures more = [&](const Features& own) -> std::optional<Features> {
+        Features doubted = part_of(seen, kEvery, true);
+        doubted.trust.assign(doubted.size(), 0.3F);
+        return joined_features(own, doubted, simulated_camera());
+      };
+      const TrackedFrame frame =
+          walk.track(k, part_of(seen, kEvery, false), may ? more : MoreFeatures{});
+      if (!has_pose(frame)) continue;
+      ++tracked;
+      EXPECT_LT(walk.error_m(frame), 0.015) << k;
+    }
+    EXPECT_EQ(tracked, may ? 30 : 0);
+  }
+}
+
+// Everything doubted has moved by 12 pixels alike, as on somebody who fills the view.
+TEST(Tracker, TakesNoPoseThatTheTrustedFeaturesContradict) {
+  std::vector<double> worst;
+  for (const double confirmed_share : {TrackerConfig{}.confirmed_share, 0.0}) {
+    TrackerConfig config = without_calibration();
+    config.confirmed_share = confirmed_share;
+    Walk walk(path, config);
+    double worst_m = 0;
+    for (int k = 1; k <= 30; ++k) {
+      const Features seen = walk.observe(k, kNoise).features;
+      const MoreFeatures more = [&](const Features& own) -> std::optional<Features> {
+        Features doubted = part_of(seen, 5, true);
+        for (std::size_t i = 0; i < doubted.size(); ++i) doubted.ideal_px[i].x() += 12.0F;
+        doubted.px = doubted.ideal_px;
+        doubted.trust.assign(doubted.size(), 1.0F);
+        return joined_features(own, doubted, simulated_camera());
+      };
+      const TrackedFrame frame = walk.track(k, part_of(seen, 5, false), more);
+      ASSERT_TRUE(has_pose(frame)) << k;
+      worst_m = std::max(worst_m, walk.error_m(frame));
+    }
+    worst.push_back(worst_m);
+  }
+  EXPECT_LT(worst[0], 0.012);
+  EXPECT_GT(worst[1], 1.5 * worst[0]) << "what moves was not taken for the room";
+}
+
+}  // namespace
+}  // namespace stillmap
