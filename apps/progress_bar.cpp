@@ -23,6 +23,10 @@ void ProgressBar::show(std::size_t done, std::size_t total) {
   fmt::print(stderr, "\r[{:<{}}] {:>3} %  {}/{} {}", filled, kWidth, percent, done, total, unit_);
 }
 
+void ProgressBar::say(const std::string& line) const {
+  if (on_terminal_) fmt::print(stderr, "{}\n", line);
+}
+
 void ProgressBar::warn(const std::string& warning) {
   finish();
   fmt::print(stderr, "stillmap: warning: {}\n", warning);

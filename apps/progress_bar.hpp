@@ -15,6 +15,8 @@ class ProgressBar {
   ProgressBar& operator=(const ProgressBar&) = delete;
 
   void show(std::size_t done, std::size_t total);
+  /// Prints a separate line on a terminal.
+  void say(const std::string& line) const;
   /// Prints a separate line, even without a terminal.
   void warn(const std::string& warning);
   /// Clears the progress line.

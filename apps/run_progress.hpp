@@ -13,8 +13,12 @@ namespace stillmap {
 /// Shows on the terminal how far a run is, and its warnings.
 class RunProgress : public RunObserver {
  public:
-  /// `frames`: how many there are; where that is not known, only warnings are shown.
-  explicit RunProgress(std::optional<std::size_t> frames) : total_(frames.value_or(0)) {}
+  /// `frames`: how many there are; where that is not known, only warnings are shown. `objects` says
+  /// what finds people and things.
+  RunProgress(std::optional<std::size_t> frames, const std::string& objects)
+      : total_(frames.value_or(0)) {
+    bar_.say("objects     " + objects);
+  }
 
   void on_frame(const RgbdFrame&, const FrameResult&) override { pass(1); }
   void on_damaged(const DamagedFrame&) override { pass(1); }

@@ -14,7 +14,7 @@
 #include "apps/version.hpp"
 #include "stillmap/config/config_io.hpp"
 #include "stillmap/core/error.hpp"
-#include "stillmap/core/nearest_name.hpp"
+#include "stillmap/core/joined.hpp"
 #include "stillmap/io/atomic_file.hpp"
 #include "stillmap/io/trajectory_io.hpp"
 #include "stillmap/sensor/camera_io.hpp"
@@ -39,8 +39,8 @@ struct RunArguments {
   std::string config_file;
   std::vector<std::string> settings;
   std::string camera;
-  std::string segmenter = "none";
-  std::string dynamics;  // empty: as configured
+  std::string segmenter;  // empty: auto where its networks are, else none
+  std::string dynamics;   // empty: as configured
   std::string frames;
   std::size_t stride = 1;
   int threads = 2;
@@ -53,19 +53,14 @@ struct RunArguments {
   std::string poses = "estimated";
 };
 
-std::string checked_mode(const std::string& mode) {
-  const std::vector<std::string> modes = {"off", "mask", "paper", "full"};
-  if (std::ranges::find(modes, mode) != modes.end()) return mode;
-  throw Error("--dynamics {}: {}", mode, name_hint(mode, modes));
-}
-
 SystemConfig make_config(const RunArguments& arguments) {
   SystemConfig config;
   const std::vector<FieldRef> fields = list_fields(config);
   if (!arguments.config_file.empty()) load_yaml(fields, arguments.config_file);
   for (const std::string& setting : arguments.settings) set_value(fields, setting, "--set");
-  if (!arguments.dynamics.empty())
-    set_value(fields, "dynamics.mode=" + checked_mode(arguments.dynamics), "--dynamics");
+  if (!arguments.dynamics.empty()) {
+    set_value(fields, "dynamics.mode=" + arguments.dynamics, "--dynamics");
+  }
   config.check();
   return config;
 }
@@ -83,13 +78,36 @@ TumSequence open_sequence(const RunArguments& arguments) {
   }
 }
 
-std::unique_ptr<Segmenter> open_segmenter(const RunArguments& arguments,
-                                          const CameraModel& camera) {
-  if (arguments.segmenter == "none") return nullptr;
-  return option_value("--segmenter", arguments.segmenter, [&](const std::string& text) {
-    return make_segmenter(
-        text, {camera.width_px, camera.height_px}, {.threads = arguments.live ? 1 : 2});
-  });
+/// What finds people and things, and how that is said.
+struct ChosenSegmenter {
+  std::unique_ptr<Segmenter> segmenter;  // null: nothing does
+  std::string line;
+  std::string warning = {};
+};
+
+ChosenSegmenter default_segmenter(cv::Size image, const SegmenterOptions& options) {
+  try {
+    return {make_segmenter("auto", image, options), "auto, the networks of make models"};
+  } catch (const Error& error) {
+    return {nullptr,
+            "none, for there are no networks: people stay in the map as far as they stand still",
+            fmt::format("nothing looks for people and things: {}", error.what())};
+  }
+}
+
+ChosenSegmenter choose_segmenter(const RunArguments& arguments,
+                                 const CameraModel& camera,
+                                 const DynamicsMode& mode) {
+  const cv::Size image(camera.width_px, camera.height_px);
+  const SegmenterOptions options{.threads = arguments.live ? 1 : 2};
+  const std::string& asked = arguments.segmenter;
+  if (asked == "none" || (asked.empty() && !mode.judges)) return {nullptr, "none, as asked for"};
+  if (asked.empty()) return default_segmenter(image, options);
+  return {
+      option_value("--segmenter",
+                   asked,
+                   [&](const std::string& text) { return make_segmenter(text, image, options); }),
+      asked};
 }
 
 // The results' folder; that of the option, where it cannot be used.
@@ -179,8 +197,11 @@ std::string gap_lines(const RunReport& report) {
   return text;
 }
 
-std::string summary(const RunArguments& arguments, const RunReport& report) {
-  std::string text = fmt::format("tracked     {} of {} frames, {} key frames\n",
+std::string summary(const RunArguments& arguments,
+                    const RunReport& report,
+                    const std::string& objects_line) {
+  std::string text = fmt::format("objects     {}\ntracked     {} of {} frames, {} key frames\n",
+                                 objects_line,
                                  report.frames_tracked,
                                  report.frames_total,
                                  report.keyframes.size());
@@ -244,22 +265,24 @@ int run(const RunArguments& arguments) {
   }
   const std::optional<SequenceTruth> truth = read_sequence_truth(arguments.sequence);
   TumFolder frames(sequence, selected_frames(arguments));
-  const std::unique_ptr<Segmenter> segmenter = open_segmenter(arguments, frames.camera());
+  const ChosenSegmenter chosen =
+      choose_segmenter(arguments, frames.camera(), dynamics_mode(config.dynamics.mode));
   RunOptions options;
   if (!arguments.load.empty()) options.start = read_session(arguments.load);
   options.localize_only = arguments.localize_only;
   prepare_out(arguments);
-  options.segmenter = segmenter.get();
+  options.segmenter = chosen.segmenter.get();
   options.threads = arguments.threads;
   options.live = live_options(arguments);
   SteadyClock clock;
   if (options.live) options.live->clock = &clock;
   if (truth || arguments.poses == "truth") options.groundtruth = groundtruth;
-  RunProgress progress(frames.size());
+  RunProgress progress(frames.size(), chosen.line);
   SequenceRun run =
       run_sequence(frames, config, std::move(options), std::vector<Observer*>{&progress});
 
   RunReport& report = run.report;
+  if (!chosen.warning.empty()) report.warnings.push_back(chosen.warning);
   report.version = kVersion;
   report.sequence = sequence.name();
   report.config_yaml = dump_yaml(list_fields(config));
@@ -271,7 +294,7 @@ int run(const RunArguments& arguments) {
       arguments.live ? std::optional(live_jsonl(run.live_record)) : std::nullopt;
   write_run_folder(arguments.out, run.result, report, {run.objects_jsonl, live_lines});
   save_session(run.session, arguments, report.config_yaml);
-  print_output(summary(arguments, report));
+  print_output(summary(arguments, report, chosen.line));
   return run.result.lost_at_end ? kLostForGood : 0;
 }
 
@@ -295,15 +318,14 @@ void add_settings(CLI::App& command, RunArguments& arguments) {
   command.add_option("--set", arguments.settings, "one setting, key=value; repeatable")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command
-      .add_option("--segmenter",
-                  arguments.segmenter,
-                  "what finds people and things: none, detections:DIR, onnx:MODEL.onnx, or auto "
-                  "(the networks of `make models`)")
-      ->capture_default_str();
+  command.add_option("--segmenter",
+                     arguments.segmenter,
+                     "what finds people and things: none, detections:DIR, onnx:MODEL.onnx, or auto "
+                     "(the networks of `make models`); auto where these are there, else none");
   command.add_option("--dynamics",
                      arguments.dynamics,
-                     "what is done about what moves: off, mask, paper or full; as dynamics.mode");
+                     fmt::format("what is done about what moves: {}; as dynamics.mode",
+                                 joined(dynamics_mode_names(), ", ")));
   command.add_option("--load",
                      arguments.load,
                      "a map.stillmap to go on from, once the camera sees a place that it has");
@@ -348,8 +370,9 @@ void add_run_command(CLI::App& app, CommandResult& result) {
       "  stillmap run rgbd_dataset_freiburg1_xyz --out result\n"
       "  stillmap run office --out result --frames 0:300 --set cloud.voxel_size_m=0.02\n"
       "  stillmap run office --out more --load result/map.stillmap --localize-only\n"
-      "  stillmap run office --out live --live --segmenter auto\n"
-      "  stillmap run office --out again --live --replay live/live.jsonl --segmenter auto\n"
+      "  stillmap run office --out result --segmenter detections:office/detections\n"
+      "  stillmap run office --out live --live\n"
+      "  stillmap run office --out again --live --replay live/live.jsonl\n"
       "Exit code 3 says that tracking was lost for good: the results end before the sequence "
       "does.");
   command->callback([arguments, &result] { result.exit_code = run(*arguments); });

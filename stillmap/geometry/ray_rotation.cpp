@@ -6,14 +6,10 @@
 #include <Eigen/SVD>
 
 #include "stillmap/core/error.hpp"
+#include "stillmap/geometry/cauchy.hpp"
 
 namespace stillmap {
 namespace {
-
-/// The weight of a residual under the Cauchy loss: small for large residuals.
-double cauchy_weight(double squared, double scale) {
-  return 1.0 / (1.0 + squared / (scale * scale));
-}
 
 Eigen::Vector3d ray(const CameraModel& camera, const Eigen::Vector2d& px) {
   return camera.unproject(px, 1.0).normalized();

@@ -5,17 +5,13 @@
 
 #include <Eigen/Cholesky>
 
+#include "stillmap/geometry/cauchy.hpp"
 #include "stillmap/geometry/se3.hpp"
 
 namespace stillmap {
 namespace {
 
 using Matrix26d = Eigen::Matrix<double, 2, 6>;
-
-/// The weight of a residual under the Cauchy loss: small for large residuals.
-double cauchy_weight(double squared, double scale) {
-  return 1.0 / (1.0 + squared / (scale * scale));
-}
 
 struct NormalEquations {
   Matrix6d H = Matrix6d::Zero();

@@ -14,11 +14,11 @@ namespace stillmap {
 namespace {
 
 // Enough for 8192 x 8192 pixels of 24 bits that do not compress at all.
-constexpr std::size_t kMaxFileBytes = std::size_t{256} << 20U;
+constexpr std::size_t kMaxImageFileBytes = std::size_t{256} << 20U;
 
 std::string read_image_file(const std::filesystem::path& path) {
   if (!path_exists(path)) throw DamagedImage("{}: no such file, expected an image", path.string());
-  std::string bytes = read_file(path, kMaxFileBytes);
+  std::string bytes = read_file(path, kMaxImageFileBytes);
   if (bytes.empty()) throw DamagedImage("{}: empty file, expected an image", path.string());
   return bytes;
 }

@@ -23,7 +23,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little,
               "values are copied as they are in memory");
 
-constexpr std::size_t kMaxFileBytes = std::size_t{4} << 30U;
+constexpr std::size_t kMaxPlyBytes = std::size_t{4} << 30U;
 
 // The values of a point, in this order, whatever their order in a file.
 enum Slot : std::size_t { kX, kY, kZ, kRed, kGreen, kBlue, kLabel, kNx, kNy, kNz, kSlots };
@@ -274,7 +274,7 @@ std::string encode_ply(const PointCloud& cloud, PlyFormat format) {
 }
 
 PointCloud read_ply(const std::filesystem::path& path) {
-  const std::string bytes = read_file(path, kMaxFileBytes);
+  const std::string bytes = read_file(path, kMaxPlyBytes);
   const PlyHeader header = parse_ply_header(bytes, path.string());
   const std::string_view data = std::string_view(bytes).substr(header.header_bytes);
   return header.binary ? read_binary(header, data, path.string())

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -13,6 +14,9 @@ namespace stillmap {
 // The parts of a session as bytes. encode() gives the content of a section; decode_*() reads it to
 // its end and throws Error when it has another form. Meanings are checked elsewhere
 // (session_parts.hpp).
+
+/// A pose in the file: a rotation matrix and a translation.
+inline constexpr std::size_t kPoseSize = 12 * sizeof(double);
 
 /// The numbers of the map that belong to no list.
 [[nodiscard]] ByteWriter encode_map_head(const MapParts& map);

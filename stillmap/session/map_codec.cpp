@@ -6,7 +6,6 @@
 namespace stillmap {
 namespace {
 
-constexpr std::size_t kPoseSize = 12 * sizeof(double);
 constexpr std::size_t kObservationSize = 8;
 // With one observation, the least number.
 constexpr std::size_t kLeastLandmarkSize = 116 + kObservationSize;

@@ -8,8 +8,6 @@
 namespace stillmap {
 namespace {
 
-constexpr std::size_t kPoseSize = 12 * sizeof(double);
-
 constexpr std::array kCameraNumbers = {&CameraModel::fx,
                                        &CameraModel::fy,
                                        &CameraModel::cx,

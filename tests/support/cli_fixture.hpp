@@ -30,12 +30,13 @@ class Cli : public testing::Test {
   }
   ~Cli() override { std::filesystem::remove_all(folder_); }
 
-  // Runs "stillmap ARGUMENTS" in a shell, in the test's own folder; `environment` is of the form
-  // NAME=VALUE.
+  // Runs "stillmap ARGUMENTS" in a shell, in the test's own folder, without the networks that this
+  // machine may have; `environment` is of the form NAME=VALUE.
   [[nodiscard]] Outcome run(const std::string& arguments,
                             const std::string& environment = "") const {
-    const std::string command = "cd '" + folder_.string() + "' && " + environment +
-                                " '" STILLMAP_BINARY_DIR "/bin/stillmap' " + arguments;
+    const std::string command = "cd '" + folder_.string() + "' && STILLMAP_MODELS=none " +
+                                environment + " '" STILLMAP_BINARY_DIR "/bin/stillmap' " +
+                                arguments;
     const int status = std::system(
         ("{ " + command + "; } > " + path("stdout.txt") + " 2> " + path("stderr.txt")).c_str());
     return {

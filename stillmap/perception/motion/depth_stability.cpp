@@ -13,7 +13,7 @@ constexpr double kMadToSigma = 1.4826;
 // Depth comes in steps, so most blocks of a wall may spread by exactly the same.
 constexpr double kLeastMad = 1e-6;
 
-double median(std::vector<double> values) {
+double upper_median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::ranges::nth_element(values, middle);
   return *middle;
@@ -55,10 +55,11 @@ std::vector<DepthStability> judge_depth_stability(const DepthImage& depth,
     spreads.push_back(*spread);
   }
   if (spreads.empty()) return result;
-  const double middle = median(spreads);
+  const double middle = upper_median(spreads);
   std::vector<double> distances = spreads;
   for (double& d : distances) d = std::abs(d - middle);
-  const double bound = config.mad_factor * kMadToSigma * std::max(median(distances), kLeastMad);
+  const double bound =
+      config.mad_factor * kMadToSigma * std::max(upper_median(distances), kLeastMad);
   for (std::size_t k = 0; k < measured.size(); ++k) {
     result[measured[k]] =
         std::abs(spreads[k] - middle) > bound ? DepthStability::kUnstable : DepthStability::kStable;

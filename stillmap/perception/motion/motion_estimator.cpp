@@ -15,7 +15,7 @@ constexpr double kForgetAfter_s = 2.0;
 constexpr double kLongestGap_s = 0.5;
 constexpr double kSurfacePoints = 300;
 
-double median(std::vector<double> values) {
+double lower_median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
   std::ranges::nth_element(values, middle);
   return *middle;
@@ -77,14 +77,14 @@ RobustVelocity robust_velocity(std::span<const double> stamps_s,
         slopes.push_back((positions[j][axis] - positions[i][axis]) / (stamps_s[j] - stamps_s[i]));
       }
     }
-    const double slope = median(slopes);
+    const double slope = lower_median(slopes);
     std::vector<double> rests, sizes;
     for (std::size_t i = 0; i < n; ++i) {
       rests.push_back(positions[i][axis] - slope * (stamps_s[i] - middle_s));
     }
-    const double offset = median(rests);
+    const double offset = lower_median(rests);
     for (const double rest : rests) sizes.push_back(std::abs(rest - offset));
-    const double deviation = 1.4826 * median(sizes);
+    const double deviation = 1.4826 * lower_median(sizes);
     scatter += deviation * deviation;
     result.velocity[axis] = slope;
   }

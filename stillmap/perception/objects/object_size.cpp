@@ -10,10 +10,23 @@ namespace {
 
 // Width times height of a large one. A person of 2 m with both arms held out covers 1.1 m^2.
 constexpr std::array<std::pair<std::string_view, double>, 17> kLargest_m2 = {{
-    {"airplane", 1000}, {"bed", 5},       {"bicycle", 2},       {"boat", 1000}, {"bus", 50},
-    {"car", 12},        {"chair", 1.2},   {"couch", 4},         {"cow", 5},     {"dining table", 5},
-    {"elephant", 20},   {"giraffe", 12},  {"horse", 6},         {"motorcycle", 3},
-    {"person", 1.5},    {"train", 1000},  {"truck", 50},
+    {"airplane", 1000},
+    {"bed", 5},
+    {"bicycle", 2},
+    {"boat", 1000},
+    {"bus", 50},
+    {"car", 12},
+    {"chair", 1.2},
+    {"couch", 4},
+    {"cow", 5},
+    {"dining table", 5},
+    {"elephant", 20},
+    {"giraffe", 12},
+    {"horse", 6},
+    {"motorcycle", 3},
+    {"person", 1.5},
+    {"train", 1000},
+    {"truck", 50},
 }};
 constexpr double kLargestOther_m2 = 1.5;
 

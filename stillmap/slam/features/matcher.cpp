@@ -73,15 +73,15 @@ AllPairs compare_all(const Features& a,
                      const Features& b) {
   AllPairs pairs{std::vector<BestTwo>(a_indices.size()),
                  std::vector<std::uint32_t>(b.size(), kNone)};
-  std::vector<int> least(b.size(), kNoDistance);
+  std::vector<int> nearest(b.size(), kNoDistance);
   for (std::uint32_t place = 0; place < a_indices.size(); ++place) {
     const Descriptor& descriptor = a.descriptors[a_indices[place]];
     BestTwo& best = pairs.best_of_a[place];
     for (std::uint32_t i = 0; i < b.size(); ++i) {
       const int distance = hamming_distance(descriptor, b.descriptors[i]);
       best.offer(i, distance, 0);
-      if (distance >= least[i]) continue;
-      least[i] = distance;
+      if (distance >= nearest[i]) continue;
+      nearest[i] = distance;
       pairs.nearest_to[i] = place;
     }
   }

@@ -14,7 +14,7 @@ namespace {
 using Matrix63d = Eigen::Matrix<double, 6, 3>;
 
 constexpr std::uint32_t kHeld = ~std::uint32_t{0};
-constexpr double kConverged = 1e-5;  // relative decrease of the cost
+constexpr double kBundleConverged = 1e-5;  // relative decrease of the cost
 // Squared error, in sigmas, of a point that a step moved behind a camera, where the error is
 // undefined: that of a gross outlier. A step that does this to one of ten thousand points may still
 // be good.
@@ -219,7 +219,7 @@ int Solver::minimize(int iterations) {
       damping *= 10;
       continue;
     }
-    const bool converged = cost - new_cost < kConverged * cost;
+    const bool converged = cost - new_cost < kBundleConverged * cost;
     problem_.T_camera_world = std::move(poses);
     problem_.points = std::move(points);
     cost = new_cost;

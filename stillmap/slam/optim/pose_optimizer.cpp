@@ -13,7 +13,7 @@ constexpr int kRounds = 4;
 constexpr int kRobustRounds = 2;
 constexpr int kIterations = 8;
 constexpr int kMinObservations = 3;
-constexpr double kConverged = 1e-6;  // relative decrease of the cost
+constexpr double kPoseConverged = 1e-6;  // relative decrease of the cost
 
 using Observations = std::span<const PoseObservation>;
 
@@ -91,7 +91,7 @@ Eigen::Isometry3d minimize(const CameraModel& camera,
     }
     T = candidate;
     damping = std::max(damping * 0.1, 1e-9);
-    if (eq.cost - cost < kConverged * eq.cost) break;
+    if (eq.cost - cost < kPoseConverged * eq.cost) break;
   }
   return T;
 }
