@@ -46,17 +46,35 @@ std::unique_ptr<Segmenter> make_person_segmenter(cv::Size image, const Segmenter
   return std::make_unique<PersonSegmenter>(std::move(detector), std::move(matting), kPerson, image);
 }
 
-std::unique_ptr<Segmenter> make_network_segmenter(const fs::path& file,
-                                                  cv::Size image,
-                                                  const SegmenterOptions& options) {
-  std::unique_ptr<Network> network = open_onnx_network(file, {options.threads});
+// Calls what may fail; names the file in the message where that does not.
+template <class Call>
+auto naming_file(const fs::path& file, const Call& call) {
   try {
-    return std::make_unique<NetworkSegmenter>(std::move(network), image);
+    return call();
   } catch (const Error& error) {
     const std::string text = error.what();
     throw Error(text.starts_with(file.string()) ? text : file.string() + ": " + text);
   }
 }
+
+// One network of a file.
+class FileSegmenter : public Segmenter {
+ public:
+  FileSegmenter(fs::path file, cv::Size image, const SegmenterOptions& options)
+      : file_(std::move(file)), network_(naming_file(file_, [&] {
+          return std::make_unique<NetworkSegmenter>(open_onnx_network(file_, {options.threads}),
+                                                    image);
+        })) {}
+
+  [[nodiscard]] FrameDetections segment(const ColorImage& color,
+                                        const Stamp& stamp) const override {
+    return naming_file(file_, [&] { return network_->segment(color, stamp); });
+  }
+
+ private:
+  fs::path file_;
+  std::unique_ptr<NetworkSegmenter> network_;
+};
 
 }  // namespace
 
@@ -71,7 +89,7 @@ std::unique_ptr<Segmenter> make_segmenter(std::string_view description,
     return std::make_unique<FolderSegmenter>(description.substr(kFolder.size()), image);
   }
   if (description.starts_with(kNetwork) && description.size() > kNetwork.size()) {
-    return make_network_segmenter(description.substr(kNetwork.size()), image, options);
+    return std::make_unique<FileSegmenter>(description.substr(kNetwork.size()), image, options);
   }
   throw Error("{}: expected detections:DIR, onnx:MODEL.onnx or auto", description);
 }
