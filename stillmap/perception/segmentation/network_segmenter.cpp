@@ -10,6 +10,7 @@
 #include <opencv2/core.hpp>
 
 #include "stillmap/core/error.hpp"
+#include "stillmap/perception/detections/class_names.hpp"
 #include "stillmap/perception/segmentation/centernet.hpp"
 #include "stillmap/perception/segmentation/class_map.hpp"
 #include "stillmap/perception/segmentation/detr.hpp"
@@ -94,7 +95,7 @@ int stride_of(std::int64_t cells, cv::Size input) {
 
 bool is_person(const std::vector<std::string>& names, int label) {
   const auto index = static_cast<std::size_t>(label);
-  return index < names.size() && names[index] == "person";
+  return index < names.size() && coco_name(names[index]) == "person";
 }
 
 PixelBox scaled(const PixelBox& box, double scale) {
@@ -232,7 +233,7 @@ PersonSegmenter::PersonSegmenter(std::unique_ptr<Network> detector,
 FrameDetections PersonSegmenter::segment(const ColorImage& color, const Stamp& stamp) const {
   std::vector<FoundObject> objects;
   for (FoundObject& object : detector_.find(color)) {
-    if (object.class_name != "person") {
+    if (coco_name(object.class_name) != "person") {
       objects.push_back(std::move(object));
     } else if (std::optional<FoundObject> person = with_mask(std::move(object), color)) {
       objects.push_back(*std::move(person));
