@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 
 #include "apps/commands.hpp"
+#include "apps/image_names.hpp"
 #include "apps/option_value.hpp"
 #include "apps/run_progress.hpp"
 #include "apps/steady_clock.hpp"
@@ -84,11 +85,14 @@ TumSequence open_sequence(const RunArguments& arguments) {
 }
 
 std::unique_ptr<Segmenter> open_segmenter(const RunArguments& arguments,
+                                          const TumSequence& sequence,
                                           const CameraModel& camera) {
   if (arguments.segmenter == "none") return nullptr;
   return option_value("--segmenter", arguments.segmenter, [&](const std::string& text) {
     return make_segmenter(
-        text, {camera.width_px, camera.height_px}, {.threads = arguments.live ? 1 : 2});
+        text,
+        {camera.width_px, camera.height_px},
+        {.threads = arguments.live ? 1 : 2, .image_names = image_names(sequence.entries())});
   });
 }
 
@@ -244,7 +248,7 @@ int run(const RunArguments& arguments) {
   }
   const std::optional<SequenceTruth> truth = read_sequence_truth(arguments.sequence);
   TumFolder frames(sequence, selected_frames(arguments));
-  const std::unique_ptr<Segmenter> segmenter = open_segmenter(arguments, frames.camera());
+  const std::unique_ptr<Segmenter> segmenter = open_segmenter(arguments, sequence, frames.camera());
   RunOptions options;
   if (!arguments.load.empty()) options.start = read_session(arguments.load);
   options.localize_only = arguments.localize_only;
@@ -298,8 +302,8 @@ void add_settings(CLI::App& command, RunArguments& arguments) {
   command
       .add_option("--segmenter",
                   arguments.segmenter,
-                  "what finds people and things: none, detections:DIR, onnx:MODEL.onnx, or auto "
-                  "(the networks of `make models`)")
+                  "what finds people and things: none, detections:DIR, masks:DIR (plain masks of "
+                  "people), onnx:MODEL.onnx, or auto (the networks of `make models`)")
       ->capture_default_str();
   command.add_option("--dynamics",
                      arguments.dynamics,

@@ -8,6 +8,7 @@
 #include "stillmap/core/error.hpp"
 #include "stillmap/io/atomic_file.hpp"
 #include "stillmap/perception/detections/detections_io.hpp"
+#include "stillmap/perception/segmentation/mask_folder.hpp"
 #include "stillmap/perception/segmentation/model_folder.hpp"
 #include "stillmap/perception/segmentation/network_segmenter.hpp"
 #include "stillmap/perception/segmentation/onnx_runtime.hpp"
@@ -81,17 +82,21 @@ class FileSegmenter : public Segmenter {
 std::unique_ptr<Segmenter> make_segmenter(std::string_view description,
                                           cv::Size image,
                                           const SegmenterOptions& options) {
-  constexpr std::string_view kFolder = "detections:", kNetwork = "onnx:";
+  constexpr std::string_view kFolder = "detections:", kMasks = "masks:", kNetwork = "onnx:";
   if (description == "auto" || description == "onnx:auto") {
     return make_person_segmenter(image, options);
   }
   if (description.starts_with(kFolder) && description.size() > kFolder.size()) {
     return std::make_unique<FolderSegmenter>(description.substr(kFolder.size()), image);
   }
+  if (description.starts_with(kMasks) && description.size() > kMasks.size()) {
+    return std::make_unique<MaskFolder>(
+        description.substr(kMasks.size()), image, options.image_names);
+  }
   if (description.starts_with(kNetwork) && description.size() > kNetwork.size()) {
     return std::make_unique<FileSegmenter>(description.substr(kNetwork.size()), image, options);
   }
-  throw Error("{}: expected detections:DIR, onnx:MODEL.onnx or auto", description);
+  throw Error("{}: expected detections:DIR, masks:DIR, onnx:MODEL.onnx or auto", description);
 }
 
 }  // namespace stillmap

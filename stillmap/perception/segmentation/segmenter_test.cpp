@@ -54,8 +54,9 @@ std::string refusal(const std::string& description) {
 }
 
 TEST(MakeSegmenter, NamesWhatItExpects) {
-  for (const char* description : {"", "yes", "detections:", "onnx:", "Auto", "none"}) {
-    EXPECT_THAT(refusal(description), HasSubstr("detections:DIR, onnx:MODEL.onnx or auto"));
+  for (const char* description : {"", "yes", "detections:", "masks:", "onnx:", "Auto", "none"}) {
+    EXPECT_THAT(refusal(description),
+                HasSubstr("detections:DIR, masks:DIR, onnx:MODEL.onnx or auto"));
   }
 }
 
