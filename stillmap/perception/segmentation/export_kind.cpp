@@ -93,9 +93,14 @@ TensorShape image_input_shape(const NetworkSignature& signature, cv::Size image)
   const bool first = shape.size() == 4 && shape[1] == 3;
   const bool last = shape.size() == 4 && !first && shape[3] == 3;
   if ((!first && !last) || shape[0] > kMostBatch) {
-    throw Error("a network with {} inputs, the first {}: expected one, images 1x3xHxW or 1xHxWx3",
-                signature.inputs.size(),
-                signature.inputs.empty() ? "none" : shape_text(signature.inputs[0].shape));
+    std::vector<std::string> texts;
+    for (const NamedShape& input : signature.inputs) texts.push_back(shape_text(input.shape));
+    throw Error(
+        "a network with the inputs {}: expected one image, 1x3xHxW or 1xHxWx3, or at most {} in "
+        "one "
+        "batch",
+        texts.empty() ? "none" : joined(texts, ", "),
+        kMostBatch);
   }
   constexpr std::int64_t kStep = 32, kMostSide = 8192;
   const auto size_or = [&](std::int64_t size, int image_size) {

@@ -18,7 +18,7 @@ namespace stillmap {
 enum class ExportKind {
   kClassMap,     ///< one output: 1xCxHxW or 1xHxWxC, or 1xHxW with class numbers
   kYoloRows,     ///< YOLOv5: 1xNxA, N > A, and 1xPxHxW if it segments
-  kYoloColumns,  ///< YOLOv8 or 11: 1xAxN, N > A, and 1xPxHxW if it segments
+  kYoloColumns,  ///< YOLOv8 or 11: 1xAxN, N >= A, and 1xPxHxW if it segments
   kYoloFinal,    ///< YOLO end to end: 1xNx6, or 1xNx(6+P) and 1xPxHxW
   kDetr,         ///< RT-DETR: 1xQx4 and 1xQxC, or 1xQx(4+C); boxes only
   kSsd,          ///< BlitzNet: anchors Nx4, offsets 1xNx4, classes 1xNxC, class map 1xCxHxW

@@ -66,7 +66,7 @@ TEST(ImageInputShape, RefusesOtherInputs) {
   EXPECT_THAT(error_of([] {
                 (void)image_input_shape(NetworkSignature(), {640, 480});
               }),
-              HasSubstr("0 inputs, the first none: expected one"));
+              HasSubstr("the inputs none: expected one image"));
 }
 
 TEST(IdentifyExport, ClassMap) {
@@ -116,6 +116,7 @@ TEST(IdentifyExport, YoloWithMasks) {
 TEST(IdentifyExport, YoloWithBoxesOnly) {
   EXPECT_EQ(identify({{1, 25200, 85}}).kind, ExportKind::kYoloRows);
   EXPECT_EQ(identify({{1, 84, 8400}}).kind, ExportKind::kYoloColumns);
+  EXPECT_EQ(identify({{1, 84, 84}}).kind, ExportKind::kYoloColumns);  // all cells of 64x64
   EXPECT_EQ(identify({{1, 300, 6}}).kind, ExportKind::kYoloFinal);
   EXPECT_EQ(identify({{1, 300, 6}}).names.size(), 80U);
 }

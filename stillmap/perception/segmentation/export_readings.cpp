@@ -71,7 +71,7 @@ void add_yolo(const std::vector<Tensor>& outputs, cv::Size input, Readings& read
   if (shape[2] == 6 + prototypes && shape[1] <= kMostFinal) {
     readings.push_back({{ExportKind::kYoloFinal, used, {}, false}, std::nullopt, false});
   }
-  if (shape[2] > shape[1] && shape[1] > 4 + prototypes) {
+  if (shape[2] >= shape[1] && shape[1] > 4 + prototypes) {
     readings.push_back(
         {{ExportKind::kYoloColumns, used, {}, false}, shape[1] - 4 - prototypes, false});
   }
