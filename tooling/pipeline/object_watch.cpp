@@ -12,7 +12,7 @@
 namespace stillmap {
 namespace {
 
-constexpr double kEarly_s = 5;
+constexpr double kEarlySeconds = 5;
 constexpr std::size_t kMostUnknown = 1000;  // a hostile list of detections has any number
 
 constexpr std::string_view kAdvice =
@@ -33,11 +33,11 @@ void ObjectWatch::on_frame(const RgbdFrame& /*frame*/, const FrameResult& result
       unknown_.insert(object.class_name);
     }
   }
-  if (first_dynamic_s_ || warned_early_ || since_start_s < kEarly_s) return;
+  if (first_dynamic_s_ || warned_early_ || since_start_s < kEarlySeconds) return;
   warned_early_ = true;
   warn_(
       fmt::format("no object of a dynamic class, such as a person, was found in the first {} s: {}",
-                  kEarly_s,
+                  kEarlySeconds,
                   kAdvice));
 }
 

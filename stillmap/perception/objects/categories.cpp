@@ -24,7 +24,7 @@ std::string checked_name(std::string_view key, std::string_view name) {
   if (name.empty()) {
     throw Error("{}: a name is empty: expected names separated by single commas", key);
   }
-  const std::string coco = coco_name(name);
+  std::string coco = coco_name(name);
   if (is_coco_class(coco)) return coco;
   const std::span<const std::string_view> names = coco_class_names();
   const std::vector<std::string> known(names.begin(), names.end());

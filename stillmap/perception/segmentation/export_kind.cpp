@@ -109,7 +109,7 @@ TensorShape image_input_shape(const NetworkSignature& signature, cv::Size image)
   const std::int64_t batch = std::max<std::int64_t>(shape[0], 1);
   const std::int64_t height = size_or(shape[first ? 2 : 1], image.height);
   const std::int64_t width = size_or(shape[first ? 3 : 2], image.width);
-  const TensorShape input =
+  TensorShape input =
       first ? TensorShape{batch, 3, height, width} : TensorShape{batch, height, width, 3};
   if (height > kMostSide || width > kMostSide || element_count(input) < 0) {
     throw Error("a network for {} images of {}x{} pixels, expected at most {} a side",

@@ -118,6 +118,7 @@ TEST(IdentifyExport, YoloWithBoxesOnly) {
   EXPECT_EQ(identify({{1, 84, 8400}}).kind, ExportKind::kYoloColumns);
   EXPECT_EQ(identify({{1, 84, 84}}).kind, ExportKind::kYoloColumns);  // all cells of 64x64
   EXPECT_EQ(identify({{1, 300, 6}}).kind, ExportKind::kYoloFinal);
+  EXPECT_EQ(identify({{1, 0, 6}}).kind, ExportKind::kYoloFinal);
   EXPECT_EQ(identify({{1, 300, 6}}).names.size(), 80U);
 }
 
@@ -206,6 +207,12 @@ TEST(IdentifyExport, RefusesValuesThatAreNone) {
   Tensor rows = zeros({{1, 2, 6}})[0];
   rows.values[5] = 0.5F;
   EXPECT_THAT(refusal_of_values(rows), HasSubstr("a class number of 0.5"));
+  std::vector<Tensor> heat = zeros({{1, 160, 160, 80}, {1, 160, 160, 4}});
+  heat[0].values[7] = -3;
+  EXPECT_THAT(error_of([&] {
+                (void)identify_export(with_input({1, 3, 640, 640}), heat, kInput);
+              }),
+              HasSubstr("a score of -3, expected 0 to 1"));
   Tensor labels = zeros({{1, 160, 160}})[0];
   labels.values[9] = 0.25F;
   EXPECT_THAT(refusal_of_values(labels),

@@ -158,7 +158,7 @@ std::string yolo_problem(const NetworkExport& network, const std::vector<Tensor>
   constexpr float kLeastScore = 1e-6F;  // rows of nothing may have no class
   constexpr double kLargestShare = 2;
   std::vector<Candidate> boxes;
-  const std::string refusal = refusal_of([&] {
+  std::string refusal = refusal_of([&] {
     boxes = decode_yolo_boxes(yolo_outputs(network, outputs), network.names.size(), kLeastScore);
   });
   const auto is_share = [](const Candidate& candidate) {
@@ -166,6 +166,12 @@ std::string yolo_problem(const NetworkExport& network, const std::vector<Tensor>
   };
   if (!refusal.empty() || boxes.empty() || !std::ranges::all_of(boxes, is_share)) return refusal;
   return "all boxes lie in 0 to 1, expected pixels of the network's input";
+}
+
+std::string not_probabilities(const Tensor& scores) {
+  const auto odd =
+      std::ranges::find_if(scores.values, [](float score) { return is_no_probability(score); });
+  return odd == scores.values.end() ? "" : no_probability_text(*odd);
 }
 
 std::string not_class_numbers(const Tensor& map, std::size_t classes) {
@@ -203,9 +209,10 @@ std::string contradiction(const NetworkExport& network, const std::vector<Tensor
       return without_batch(output(0).shape, 2).size() == 2
                  ? not_class_numbers(outputs[network.outputs[0]], network.names.size())
                  : "";
-    case ExportKind::kSsd:
     case ExportKind::kNanoDet:
     case ExportKind::kCenterNet:
+      return not_probabilities(outputs[network.outputs[0]]);
+    case ExportKind::kSsd:
       return "";
   }
   return "";

@@ -73,9 +73,9 @@ MaskFolder::MaskFolder(fs::path folder, cv::Size image, std::map<std::string, st
 }
 
 fs::path MaskFolder::file_of(const Stamp& stamp) const {
-  const fs::path by_stamp = folder_ / fs::path(stamp.text + ".png").filename();
+  fs::path by_stamp = folder_ / fs::path(stamp.text + ".png").filename();
   const auto name = names_.find(stamp.text);
-  const fs::path by_name =
+  fs::path by_name =
       name == names_.end() ? by_stamp : folder_ / fs::path(name->second + ".png").filename();
   if (path_exists(by_name)) return by_name;
   if (path_exists(by_stamp)) return by_stamp;

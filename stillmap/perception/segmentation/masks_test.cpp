@@ -215,6 +215,13 @@ TEST(Yolo, EndToEnd) {
   expect_yolo({YoloLayout::kFinal, boxes.view(), yolo.prototypes.view()});
 }
 
+// Networks that suppress overlaps themselves may give as many rows as there are objects.
+TEST(Yolo, EndToEndWithoutObjects) {
+  const Tensor none{{1, 0, 6}, {}};
+  EXPECT_THAT(decode_yolo_boxes({YoloLayout::kFinal, none.view(), {}}, 80, 0.3F),
+              testing::IsEmpty());
+}
+
 TEST(Yolo, WithoutPrototypesBoxesAlone) {
   // One class: {x, y, w, h, objectness, class} and {x, y, w, h, class}.
   const Tensor rows{{1, 2, 6}, {8, 8, 8, 4, 0.5F, 0.8F, 1, 1, 1, 1, 0.1F, 1}};

@@ -25,8 +25,7 @@ struct Yolo {
 };
 
 bool is_complete(const TensorShape& shape, const TensorView& output, std::size_t rank) {
-  return shape.size() == rank && element_count(shape) > 0 &&
-         element_count(shape) == std::ssize(output.values);
+  return shape.size() == rank && element_count(shape) == std::ssize(output.values);
 }
 
 [[noreturn]] void refuse(const YoloOutputs& outputs, std::size_t classes) {
@@ -67,12 +66,8 @@ Yolo understand(const YoloOutputs& outputs, std::size_t classes) {
   return yolo;
 }
 
-// Half-precision sums may go a little beyond 1.
 float checked_score(float score) {
-  constexpr float kTolerance = 0.01F;
-  if (score < -kTolerance || score > 1 + kTolerance) {
-    throw Error("a score of {}, expected 0 to 1: the export has to end with probabilities", score);
-  }
+  if (is_no_probability(score)) throw Error(no_probability_text(score));
   return score;
 }
 
