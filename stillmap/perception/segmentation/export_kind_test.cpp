@@ -196,9 +196,9 @@ TEST(IdentifyExport, RefusesClassifiersOfWholeImages) {
 
 TEST(IdentifyExport, RefusesValuesThatAreNone) {
   Tensor columns = zeros({{1, 84, 100}})[0];
-  columns.values[4 * 100] = 7.5F;  // the first class of the first box
+  columns.values[400] = 7.5F;  // the first class of the first box
   EXPECT_THAT(refusal_of_values(columns), HasSubstr("a score of 7.5, expected 0 to 1"));
-  columns.values[4 * 100] = 0.5F;
+  columns.values[400] = 0.5F;
   for (const std::size_t a : {0U, 1U, 2U, 3U}) columns.values[a * 100] = 0.5F;
   EXPECT_THAT(refusal_of_values(columns), HasSubstr("all boxes lie in 0 to 1, expected pixels"));
   Tensor queries = zeros({{1, 2, 84}})[0];
