@@ -90,6 +90,30 @@ TEST_F(Objects, AreToldOfAndLabelled) {
   EXPECT_THAT(content("out/report.html"), HasSubstr("<svg class=\"boxes\""));
 }
 
+TEST_F(Objects, WithoutPeopleTheRunWarns) {
+  std::string lines = content("found/detections.jsonl");
+  for (std::size_t at = lines.find("person"); at != std::string::npos; at = lines.find("person")) {
+    lines.replace(at, 6, "statue");
+  }
+  write("found/detections.jsonl", lines);
+  const std::string command = "run wall --out out --segmenter detections:found --dynamics full";
+  const Outcome outcome = run(command);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err,
+              HasSubstr("warning: no object of a dynamic class, such as a person, was "
+                        "found in any of 30 frames"));
+  EXPECT_THAT(outcome.err, HasSubstr("taken for static: statue; "));
+  const json report = json::parse(content("out/report.json"));
+  EXPECT_TRUE(report.at("objects").at("first_dynamic_s").is_null());
+  EXPECT_EQ(report.at("warnings").size(), 2U);
+  EXPECT_THAT(content("out/report.html"), HasSubstr("was found in any of 30 frames"));
+
+  const Outcome known = run(command + " --set dynamics.categories.synonyms=statue=person");
+  ASSERT_EQ(known.exit_code, 0) << known.err;
+  EXPECT_EQ(known.err, "");
+  EXPECT_EQ(json::parse(content("out/report.json")).at("objects").at("first_dynamic_s"), 0);
+}
+
 TEST_F(Objects, AreTheSameToTheBitForAnyThreads) {
   const std::string command = " --segmenter detections:found --dynamics full --threads ";
   ASSERT_EQ(run("run wall --out a" + command + "1").exit_code, 0);

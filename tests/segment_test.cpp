@@ -56,6 +56,45 @@ TEST_F(Segment, WritesTheFolder) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "again/masks/1.0.png"));
 }
 
+// The images are called by numbers, and so are the masks.
+TEST_F(Segment, TakesPlainMasksNamedAsTheImages) {
+  std::filesystem::create_directories(folder_ / "people");
+  std::string rgb;
+  for (const char* stamp : {"1.0", "1.1", "1.2"}) {
+    const std::string name = "image" + std::string(1, stamp[2]);
+    std::filesystem::rename(folder_ / "s/rgb" / (std::string(stamp) + ".png"),
+                            folder_ / "s/rgb" / (name + ".png"));
+    rgb += std::string(stamp) + " rgb/" + name + ".png\n";
+    cv::Mat1b mask = cv::Mat1b::zeros(48, 64);
+    if (stamp[2] == '1') mask(cv::Rect(10, 20, 8, 16)).setTo(255);
+    write("people/" + name + ".png", encode_mask_png(mask));
+  }
+  write("s/rgb.txt", rgb);
+  const Outcome outcome = run("segment s --out again --segmenter masks:people");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.err, IsEmpty());
+  EXPECT_EQ(content("again/detections.jsonl"),
+            "{\"stamp\":\"1.0\",\"objects\":[]}\n"
+            "{\"stamp\":\"1.1\",\"objects\":[{\"id\":1,\"class\":\"person\",\"score\":1,"
+            "\"box\":[10,20,18,36]}]}\n"
+            "{\"stamp\":\"1.2\",\"objects\":[]}\n");
+  std::filesystem::remove(folder_ / "people/image2.png");
+  expect_refused("segment s --out more --segmenter masks:people", "image2.png: no such mask");
+  expect_refused("segment s --out people --segmenter masks:people", "would be overwritten");
+}
+
+TEST_F(Segment, NamesClassesThatNobodyKnows) {
+  std::string lines = content("found/detections.jsonl");
+  lines.replace(lines.find("person"), 6, "pallet");
+  lines.replace(lines.find("person"), 6, "Worker");
+  write("found/detections.jsonl", lines);
+  const Outcome outcome = run("segment s --out again --segmenter detections:found");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.err,
+              StartsWith("stillmap: warning: classes that no category knows are taken "
+                         "for static: pallet; "));
+}
+
 TEST_F(Segment, ADamagedImageIsAFrameWithoutObjects) {
   write("s/rgb/1.1.png", "");
   const Outcome outcome = run("segment s --out again --segmenter detections:found");

@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 
 #include "apps/commands.hpp"
+#include "apps/image_names.hpp"
 #include "apps/option_value.hpp"
 #include "apps/run_progress.hpp"
 #include "apps/steady_clock.hpp"
@@ -96,10 +97,12 @@ ChosenSegmenter default_segmenter(cv::Size image, const SegmenterOptions& option
 }
 
 ChosenSegmenter choose_segmenter(const RunArguments& arguments,
+                                 const TumSequence& sequence,
                                  const CameraModel& camera,
                                  const DynamicsMode& mode) {
   const cv::Size image(camera.width_px, camera.height_px);
-  const SegmenterOptions options{.threads = arguments.live ? 1 : 2};
+  const SegmenterOptions options{.threads = arguments.live ? 1 : 2,
+                                 .image_names = image_names(sequence.entries())};
   const std::string& asked = arguments.segmenter;
   if (asked == "none" || (asked.empty() && !mode.judges)) return {nullptr, "none, as asked for"};
   if (asked.empty()) return default_segmenter(image, options);
@@ -266,7 +269,7 @@ int run(const RunArguments& arguments) {
   const std::optional<SequenceTruth> truth = read_sequence_truth(arguments.sequence);
   TumFolder frames(sequence, selected_frames(arguments));
   const ChosenSegmenter chosen =
-      choose_segmenter(arguments, frames.camera(), dynamics_mode(config.dynamics.mode));
+      choose_segmenter(arguments, sequence, frames.camera(), dynamics_mode(config.dynamics.mode));
   RunOptions options;
   if (!arguments.load.empty()) options.start = read_session(arguments.load);
   options.localize_only = arguments.localize_only;
@@ -318,10 +321,12 @@ void add_settings(CLI::App& command, RunArguments& arguments) {
   command.add_option("--set", arguments.settings, "one setting, key=value; repeatable")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command.add_option("--segmenter",
-                     arguments.segmenter,
-                     "what finds people and things: none, detections:DIR, onnx:MODEL.onnx, or auto "
-                     "(the networks of `make models`); auto where these are there, else none");
+  command.add_option(
+      "--segmenter",
+      arguments.segmenter,
+      "what finds people and things: none, detections:DIR, masks:DIR (plain masks of "
+      "people), onnx:MODEL.onnx, or auto (the networks of `make models`); auto where these are "
+      "there, else none");
   command.add_option("--dynamics",
                      arguments.dynamics,
                      fmt::format("what is done about what moves: {}; as dynamics.mode",

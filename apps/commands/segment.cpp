@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -13,14 +14,17 @@
 #include <fmt/core.h>
 
 #include "apps/commands.hpp"
+#include "apps/image_names.hpp"
 #include "apps/option_value.hpp"
 #include "apps/progress_bar.hpp"
 #include "stillmap/concurrency/parallel.hpp"
 #include "stillmap/core/error.hpp"
 #include "stillmap/io/image_io.hpp"
+#include "stillmap/perception/detections/class_names.hpp"
 #include "stillmap/perception/detections/detections_io.hpp"
 #include "stillmap/perception/segmentation/segmenter.hpp"
 #include "stillmap/sensor/tum_lists.hpp"
+#include "tooling/pipeline/object_watch.hpp"
 
 namespace stillmap {
 namespace {
@@ -57,9 +61,13 @@ void check_out(const SegmentArguments& arguments) {
   for (const char* folder : {"rgb", "depth", "truth"}) {
     overwrites = overwrites || is_in(out, place_of(sequence / folder));
   }
-  constexpr std::string_view kFolder = "detections:";
+  constexpr std::string_view kFolder = "detections:", kMasks = "masks:";
   if (arguments.segmenter.starts_with(kFolder)) {
     overwrites = overwrites || out == place_of(arguments.segmenter.substr(kFolder.size()));
+  }
+  if (arguments.segmenter.starts_with(kMasks)) {
+    const fs::path masks = place_of(arguments.segmenter.substr(kMasks.size()));
+    overwrites = overwrites || out == masks || out / "masks" == masks;
   }
   if (!overwrites) return;
   throw Error(
@@ -100,6 +108,12 @@ Found segment_frame(const Segmenter& segmenter, const SequenceEntry& entry, cv::
   return frame;
 }
 
+void add_unknown_classes(const FrameDetections& frame, std::set<std::string>& unknown) {
+  for (const DetectedObject& object : frame.objects) {
+    if (!is_coco_class(object.class_name)) unknown.insert(object.class_name);
+  }
+}
+
 void segment(const SegmentArguments& arguments) {
   check_out(arguments);
   const std::vector<SequenceEntry> entries = read_sequence_entries(arguments.sequence);
@@ -107,11 +121,12 @@ void segment(const SegmentArguments& arguments) {
   // Frames are processed in parallel, each by one thread.
   const std::unique_ptr<Segmenter> segmenter =
       option_value("--segmenter", arguments.segmenter, [&](const std::string& text) {
-        return make_segmenter(text, size, {.threads = 1});
+        return make_segmenter(text, size, {.threads = 1, .image_names = image_names(entries)});
       });
   DetectionsWriter writer(arguments.out, size);
 
   std::size_t objects = 0;
+  std::set<std::string> unknown;
   ProgressBar progress("frames");
   const auto start = std::chrono::steady_clock::now();
   produce_in_parallel(
@@ -121,10 +136,12 @@ void segment(const SegmentArguments& arguments) {
       [&](std::size_t i, const Found& frame) {
         if (frame.second) progress.warn(*frame.second + "; taken for a frame without objects");
         writer.add(frame.first);
+        add_unknown_classes(frame.first, unknown);
         objects += frame.first.objects.size();
         progress.show(i + 1, entries.size());
       });
   writer.finish();
+  if (!unknown.empty()) progress.warn(unknown_classes_warning(unknown));
   progress.finish();
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
   print_output(fmt::format(
@@ -153,8 +170,8 @@ void add_segment_command(CLI::App& app, CommandResult&) {
   command
       ->add_option("--segmenter",
                    arguments->segmenter,
-                   "auto (the networks that tools/fetch_models gets), onnx:MODEL.onnx or "
-                   "detections:DIR")
+                   "auto (the networks that tools/fetch_models gets), onnx:MODEL.onnx, "
+                   "detections:DIR or masks:DIR (plain masks of people)")
       ->required();
   command
       ->add_option(

@@ -54,6 +54,7 @@ class TumSequence {
   /// The number of pairs, at least one; ids of frames count from 0.
   [[nodiscard]] std::size_t size() const { return entries_.size(); }
   [[nodiscard]] const SequenceEntry& entry(FrameId id) const;
+  [[nodiscard]] const std::vector<SequenceEntry>& entries() const { return entries_; }
 
   /// Decodes the images of a pair. May run in any number of threads. Throws Error, naming the file,
   /// when one is missing, broken, of the wrong kind or not of the camera's size.

@@ -59,8 +59,15 @@ RunLog::RunLog(const FrameStream& stream,
       options_(options),
       dynamics_mode_(config.dynamics.mode),
       samples_(stream.size()),
+      watch_(config.dynamics.objects.categories,
+             [this](const std::string& warning) { all_.on_warning(warning); }),
       with_objects_(options.segmenter != nullptr && dynamics_mode(config.dynamics.mode).judges),
-      all_(both({&timing_, &frames_, &samples_, with_objects_ ? &objects_ : nullptr}, observers)) {}
+      all_(both({&timing_,
+                 &frames_,
+                 &samples_,
+                 with_objects_ ? &objects_ : nullptr,
+                 with_objects_ ? &watch_ : nullptr},
+                observers)) {}
 
 void RunLog::skip(const DamagedFrame& damaged) {
   all_.on_damaged(damaged);
@@ -100,6 +107,7 @@ SequenceRun RunLog::finish(System& system) {
   if (with_objects_) {
     run.objects_jsonl = objects_.jsonl(result.trajectory);
     report.objects = objects_.summaries();
+    report.first_dynamic_s = watch_.first_dynamic_s();
   }
   report.camera = stream_.camera();
   report.camera.readout_s = system.readout_s();

@@ -10,6 +10,7 @@
 #include "stillmap/system/system.hpp"
 #include "tooling/pipeline/frame_log.hpp"
 #include "tooling/pipeline/object_log.hpp"
+#include "tooling/pipeline/object_watch.hpp"
 #include "tooling/pipeline/run_observer.hpp"
 #include "tooling/pipeline/run_sequence.hpp"
 #include "tooling/pipeline/sample_log.hpp"
@@ -45,6 +46,7 @@ class RunLog {
   FrameLog frames_;
   SampleLog samples_;
   ObjectLog objects_;
+  ObjectWatch watch_;
   bool with_objects_;
   ObserverList all_;
 };

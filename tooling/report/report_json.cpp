@@ -136,21 +136,23 @@ struct ObjectCounts {
   }
 };
 
-Json objects_json(const std::optional<std::vector<ObjectSummary>>& objects) {
-  if (!objects) {
+Json objects_json(const RunReport& report) {
+  if (!report.objects) {
     return {{"tracks", nullptr},
             {"sightings", nullptr},
             {"filled", nullptr},
             {"dynamic", nullptr},
+            {"first_dynamic_s", nullptr},
             {"classes", Json::object()}};
   }
   ObjectCounts all;
   std::map<std::string, ObjectCounts> classes;
-  for (const ObjectSummary& object : *objects) {
+  for (const ObjectSummary& object : *report.objects) {
     all.add(object);
     classes[object.class_name].add(object);
   }
   Json json = all.json();
+  json["first_dynamic_s"] = optional_json(report.first_dynamic_s);
   json["classes"] = Json::object();
   for (const auto& [name, counts] : classes) json["classes"][name] = counts.json();
   return json;
@@ -178,7 +180,7 @@ std::string report_json(const RunReport& report) {
                      {"map", map_json(report)},
                      {"map_truth_poses", map_quality_json(report.map_quality_true_poses)},
                      {"dynamics", {{"mode", text_or_null(report.dynamics_mode)}}},
-                     {"objects", objects_json(report.objects)},
+                     {"objects", objects_json(report)},
                      {"warnings", report.warnings}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }

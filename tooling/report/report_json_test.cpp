@@ -172,6 +172,7 @@ ObjectSummary object_of(const char* class_name, std::size_t frames, std::size_t 
 TEST(ReportJson, CountsObjectsByClass) {
   RunReport report;
   report.dynamics_mode = "full";
+  report.first_dynamic_s = 1.5;
   report.objects = {
       object_of("person", 10, 10), object_of("chair", 7, 2), object_of("chair", 4, 0)};
   const json j = json::parse(report_json(report));
@@ -183,6 +184,7 @@ TEST(ReportJson, CountsObjectsByClass) {
                   {"sightings", 21},
                   {"filled", 3},
                   {"dynamic", 12},
+                  {"first_dynamic_s", 1.5},
                   {"classes", {{"chair", chairs}, {"person", people}}}}));
 }
 

@@ -87,6 +87,8 @@ struct RunReport {
   std::string dynamics_mode;  ///< what was done about what moves
   /// In the order of their numbers; nullopt when nothing looked for objects.
   std::optional<std::vector<ObjectSummary>> objects;
+  /// From the first frame to the first with an object of a dynamic class; nullopt for never.
+  std::optional<double> first_dynamic_s;
 
   std::vector<ReportSample> samples;  ///< about eight, in order
   const PointCloud* map = nullptr;  ///< not owned, outlives the report; nullptr when none was made

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
+#include <map>
 
 namespace stillmap {
 namespace {
@@ -36,17 +38,66 @@ constexpr std::array<std::string_view, 80> kCoco = {
     "vase",          "scissors",     "teddy bear",
     "hair drier",    "toothbrush"};
 
-struct Alias {
-  std::string_view voc;
+struct Synonyms {
   std::string_view coco;
+  std::string_view names;  // separated by blanks
 };
 
-constexpr std::array<Alias, 6> kAliases = {{{"aeroplane", "airplane"},
-                                            {"diningtable", "dining table"},
-                                            {"motorbike", "motorcycle"},
-                                            {"pottedplant", "potted plant"},
-                                            {"sofa", "couch"},
-                                            {"tvmonitor", "tv"}}};
+// Names of VOC, of other data sets and of networks that people train, written as folded() has them.
+constexpr std::array<Synonyms, 25> kSynonyms = {{
+    {"person",
+     "persons people pedestrian pedestrians human humans man men woman women boy girl child "
+     "children kid baby adult worker rider cyclist player"},
+    {"airplane", "aeroplane plane aircraft"},
+    {"backpack", "rucksack"},
+    {"bicycle", "bike"},
+    {"book", "books"},
+    {"car", "automobile"},
+    {"cat", "kitten"},
+    {"cell phone", "phone mobilephone smartphone"},
+    {"chair", "armchair officechair swivelchair"},
+    {"couch", "sofa settee"},
+    {"cup", "mug"},
+    {"dining table", "table"},
+    {"dog", "puppy"},
+    {"donut", "doughnut"},
+    {"hair drier", "hairdryer"},
+    {"handbag", "purse"},
+    {"keyboard", "computerkeyboard"},
+    {"laptop", "laptopcomputer"},
+    {"motorcycle", "motorbike"},
+    {"mouse", "computermouse"},
+    {"potted plant", "plant houseplant"},
+    {"refrigerator", "fridge"},
+    {"remote", "remotecontrol"},
+    {"sports ball", "ball"},
+    {"tv", "tvmonitor monitor television"},
+}};
+
+std::string folded(std::string_view name) {
+  std::string letters;
+  for (const char c : name) {
+    if (c >= 'A' && c <= 'Z') letters += static_cast<char>(c - 'A' + 'a');
+    if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) letters += c;
+  }
+  return letters;
+}
+
+using NameTable = std::map<std::string, std::string_view, std::less<>>;
+
+// The class of COCO for each name of one, folded.
+NameTable make_name_table() {
+  NameTable table;
+  for (const std::string_view name : kCoco) table.emplace(folded(name), name);
+  for (const Synonyms& synonyms : kSynonyms) {
+    for (std::string_view rest = synonyms.names; !rest.empty();) {
+      const std::size_t end = std::min(rest.find(' '), rest.size());
+      table.emplace(rest.substr(0, end), synonyms.coco);
+      rest.remove_prefix(std::min(end + 1, rest.size()));
+    }
+  }
+  return table;
+}
 
 }  // namespace
 
@@ -59,8 +110,14 @@ bool is_coco_class(std::string_view name) {
 }
 
 std::string coco_name(std::string_view name) {
-  const auto* const alias = std::ranges::find(kAliases, name, &Alias::voc);
-  return std::string(alias == kAliases.end() ? name : alias->coco);
+  static const NameTable table = make_name_table();
+  const auto found = table.find(folded(name));
+  return std::string(found == table.end() ? name : found->second);
+}
+
+bool is_same_name(std::string_view a, std::string_view b) {
+  const std::string letters = folded(a);
+  return letters.empty() ? a == b : letters == folded(b);
 }
 
 }  // namespace stillmap

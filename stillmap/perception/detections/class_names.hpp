@@ -12,8 +12,12 @@ namespace stillmap {
 
 [[nodiscard]] bool is_coco_class(std::string_view name);
 
-/// The COCO name of a class that VOC names differently ("tvmonitor" -> "tv"); any other name
-/// unchanged.
+/// The COCO name of a class under any of its names: "tvmonitor" of VOC -> "tv", "Pedestrian" and
+/// "man" -> "person". Case, blanks and signs between words make no difference: "Dining_Table" ->
+/// "dining table". The name of any other class unchanged.
 [[nodiscard]] std::string coco_name(std::string_view name);
+
+/// Whether two names of classes differ at most in case, blanks and signs.
+[[nodiscard]] bool is_same_name(std::string_view a, std::string_view b);
 
 }  // namespace stillmap

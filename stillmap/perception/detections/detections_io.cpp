@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <system_error>
 #include <utility>
 
@@ -75,6 +77,65 @@ void check_mask(const cv::Mat1b& mask,
   if (id != 0) throw Error("{}: has pixels of id {}, which {} has not", path.string(), id, place);
 }
 
+// The extent of an object's pixels in the mask; empty if it has none.
+PixelBox extent_of(const cv::Mat1b& mask, int id) {
+  int x0 = mask.cols, y0 = mask.rows, x1 = 0, y1 = 0;
+  for (int row = 0; row < mask.rows; ++row) {
+    const std::uint8_t* const pixels = mask.ptr(row);
+    for (int x = 0; x < mask.cols; ++x) {
+      if (pixels[x] != id) continue;
+      x0 = std::min(x0, x);
+      x1 = std::max(x1, x + 1);
+      y0 = std::min(y0, row);
+      y1 = row + 1;
+    }
+  }
+  if (x1 == 0) return {};
+  return {static_cast<double>(x0),
+          static_cast<double>(y0),
+          static_cast<double>(x1),
+          static_cast<double>(y1)};
+}
+
+// Whether a box, give or take a tenth of its size, has the extent of the object's pixels.
+bool fits(const PixelBox& box, const PixelBox& extent) {
+  constexpr double kLeast_px = 4, kShare = 0.1;
+  const double across = std::max(kLeast_px, kShare * box.width());
+  const double down = std::max(kLeast_px, kShare * box.height());
+  return std::abs(box.x0 - extent.x0) <= across && std::abs(box.x1 - extent.x1) <= across &&
+         std::abs(box.y0 - extent.y0) <= down && std::abs(box.y1 - extent.y1) <= down;
+}
+
+// Boxes of another format: [x, y, width, height] fits the pixels of all objects that have any,
+// [x0, y0, x1, y1] of none.
+void check_box_format(const cv::Mat1b& mask, const DetectionsLine& line, const std::string& place) {
+  const DetectedObject* first = nullptr;
+  for (const DetectedObject& object : line.objects) {
+    const PixelBox extent = extent_of(mask, object.id);
+    if (extent.area() <= 0) continue;
+    const PixelBox& box = object.box;
+    const PixelBox by_size{box.x0, box.y0, box.x0 + box.x1, box.y0 + box.y1};
+    if (fits(box, extent) || !fits(by_size, extent)) return;
+    if (first == nullptr) first = &object;
+  }
+  if (first == nullptr) return;
+  throw Error(
+      "{}: object {}: box [{}, {}, {}, {}] fits its pixels as [x, y, width, height], expected "
+      "[x0, y0, x1, y1]",
+      place,
+      first->id,
+      first->box.x0,
+      first->box.y0,
+      first->box.x1,
+      first->box.y1);
+}
+
+// Whether a box lies in the image's first pixel, as one in shares of the image does.
+bool is_share(const DetectedObject& object) {
+  constexpr double kLargest = 1.5;
+  return object.box.x1 <= kLargest && object.box.y1 <= kLargest;
+}
+
 }  // namespace
 
 DetectionsWriter::DetectionsWriter(fs::path folder, cv::Size image)
@@ -127,7 +188,27 @@ DetectionsFolder DetectionsFolder::open(const fs::path& folder, cv::Size image) 
     throw Error("{}: no frame in it, expected a line for each colour image",
                 list_path(folder).string());
   }
+  detections.check_pixels();
   return detections;
+}
+
+void DetectionsFolder::check_pixels() const {
+  const Entry* first = nullptr;
+  for (const Entry& entry : lines_) {
+    if (!std::ranges::all_of(entry.line.objects, is_share)) return;
+    if (first == nullptr && !entry.line.objects.empty()) first = &entry;
+  }
+  if (first == nullptr) return;
+  const PixelBox& box = first->line.objects.front().box;
+  throw Error(
+      "{}: box [{}, {}, {}, {}] is one pixel large at most, as are all boxes of this file: "
+      "expected "
+      "[x0, y0, x1, y1] in pixels, not in shares of the image from 0 to 1",
+      line_place(folder_, first->number),
+      box.x0,
+      box.y0,
+      box.x1,
+      box.y1);
 }
 
 void DetectionsFolder::add_line(std::string_view text, std::size_t number) {
@@ -166,7 +247,9 @@ ObjectMask DetectionsFolder::read_object_mask(const Entry& entry) const {
   const fs::path path = mask_path(folder_, entry.line.stamp);
   if (!path_exists(path)) return ObjectMask();
   const cv::Mat1b mask = read_mask(path);
-  check_mask(mask, entry.line, image_, path, line_place(folder_, entry.number));
+  const std::string place = line_place(folder_, entry.number);
+  check_mask(mask, entry.line, image_, path, place);
+  check_box_format(mask, entry.line, place);
   return cv::countNonZero(mask) == 0 ? ObjectMask() : ObjectMask(mask);
 }
 

@@ -45,7 +45,8 @@ class DetectionsFolder {
  public:
   /// Reads the list but no masks. `image` is the size of the sequence's images. Throws Error, with
   /// file and line, for a list that is missing, empty or larger than 256 MiB or a million lines,
-  /// for stamps that do not increase, and for lines that parse_detections_line() refuses.
+  /// for stamps that do not increase, for lines that parse_detections_line() refuses, and where all
+  /// boxes are in shares of the image instead of pixels.
   [[nodiscard]] static DetectionsFolder open(const std::filesystem::path& folder, cv::Size image);
 
   /// The number of frames, at least one.
@@ -57,7 +58,8 @@ class DetectionsFolder {
 
   /// The detections of a frame, with the stamp of the list. The objects of a frame without a file
   /// in masks/ have no masks. Throws Error for a stamp that is not in the list, and for a mask that
-  /// is damaged, has another size than the images, or has an id that the frame's line lacks.
+  /// is damaged, has another size than the images, has an id that the frame's line lacks, or shows
+  /// that the boxes are [x, y, width, height].
   [[nodiscard]] FrameDetections at(const Stamp& stamp) const;
 
  private:
@@ -68,6 +70,7 @@ class DetectionsFolder {
 
   DetectionsFolder() = default;
   void add_line(std::string_view text, std::size_t number);
+  void check_pixels() const;
   [[nodiscard]] const Entry* find(const Stamp& stamp) const;
   [[nodiscard]] ObjectMask read_object_mask(const Entry& entry) const;
 

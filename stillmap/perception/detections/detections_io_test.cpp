@@ -183,6 +183,47 @@ TEST(DetectionsFolder, RefusesMasksThatDoNotFitTheirLine) {
   EXPECT_THAT(error(), StartsWith(mask.string()));
 }
 
+std::string line_of(const std::string& stamp, const std::string& box) {
+  return R"({"stamp":")" + stamp + R"(","objects":[{"id":7,"class":"person","score":1,"box":)" +
+         box + "}]}\n";
+}
+
+TEST(DetectionsFolder, NoticesBoxesInShares) {
+  const TemporaryFolder folder;
+  const std::string none = "{\"stamp\":\"1\",\"objects\":[]}\n";
+  write_list(folder.path(),
+             none + line_of("2", "[0.25,0.1,0.75,1.0]") + line_of("3", "[0,0,0.5,1.02]"));
+  EXPECT_THAT(open_error(folder.path()),
+              testing::AllOf(HasSubstr("detections.jsonl:2: box [0.25, 0.1, 0.75, 1]"),
+                             HasSubstr("in pixels, not in shares")));
+  // One pixel in the corner, among others, is one.
+  write_list(folder.path(), none + line_of("2", "[0,0,1,1]") + line_of("3", "[0,0,20,30]"));
+  EXPECT_EQ(DetectionsFolder::open(folder.path(), kImage).size(), 3U);
+}
+
+TEST(DetectionsFolder, NoticesBoxesOfWidthAndHeight) {
+  const TemporaryFolder folder;
+  // Pixels from (5, 4) to (25, 22): 20 wide, 18 high.
+  cv::Mat1b mask(kImage, std::uint8_t{0});
+  mask(cv::Rect(5, 4, 20, 18)).setTo(7);
+  const auto error = [&](const std::string& box) {
+    write_list(folder.path(), line_of("1", box));
+    write_file_atomically(folder.path() / "masks" / "1.png", encode_mask_png(mask));
+    const DetectionsFolder read = DetectionsFolder::open(folder.path(), kImage);
+    return error_of([&] { (void)read.at(stamp_of("1")); });
+  };
+  EXPECT_THAT(error("[5,4,20,18]"),
+              testing::AllOf(HasSubstr("detections.jsonl:1: object 7: box [5, 4, 20, 18]"),
+                             HasSubstr("expected [x0, y0, x1, y1]")));
+  write_list(folder.path(), line_of("1", "[20,4,8,18]"));
+  EXPECT_THAT(open_error(folder.path()), HasSubstr("is it COCO's [x, y, width, height]?"));
+  // Boxes as they should be, and one that only holds a part of the object.
+  for (const char* box : {"[5,4,25,22]", "[4,3,26,24]", "[5,4,15,22]"}) {
+    write_list(folder.path(), line_of("1", box));
+    EXPECT_EQ(DetectionsFolder::open(folder.path(), kImage).at(stamp_of("1")).objects.size(), 1U);
+  }
+}
+
 TEST(DetectionsFolder, AMaskWithoutPixelsIsNone) {
   const TemporaryFolder folder;
   FrameDetections frame = two_objects("1.5");

@@ -101,12 +101,14 @@ PixelBox parse_box(const Json& value, cv::Size image, const std::string& place) 
   }
   const PixelBox box{sides[0], sides[1], sides[2], sides[3]};
   if (box.x1 <= box.x0 || box.y1 <= box.y0) {
-    throw Error("{}: box [{}, {}, {}, {}] holds nothing, expected x0 < x1 and y0 < y1",
-                place,
-                box.x0,
-                box.y0,
-                box.x1,
-                box.y1);
+    throw Error(
+        "{}: box [{}, {}, {}, {}] holds nothing, expected [x0, y0, x1, y1] with x0 < x1 and y0 < "
+        "y1; is it COCO's [x, y, width, height]?",
+        place,
+        box.x0,
+        box.y0,
+        box.x1,
+        box.y1);
   }
   return box;
 }

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "stillmap/core/error.hpp"
+#include "stillmap/perception/detections/class_names.hpp"
 
 namespace stillmap {
 namespace {
@@ -21,6 +22,71 @@ TEST(Categories, DefaultsSortTheClassesOfAnOffice) {
   EXPECT_EQ(table.of("suitcase"), Category::kPotentiallyDynamic);
   EXPECT_EQ(table.of("tv"), Category::kStatic);
   EXPECT_EQ(table.of("dining table"), Category::kStatic);
+}
+
+// Nothing is static because it was forgotten.
+TEST(Categories, EveryStaticClassOfCocoIsBuiltInOrHeavy) {
+  const CategoryTable table{CategoryConfig{}};
+  std::vector<std::string_view> fixed;
+  for (const std::string_view name : coco_class_names()) {
+    if (table.of(name) == Category::kStatic) fixed.push_back(name);
+  }
+  EXPECT_THAT(fixed,
+              testing::UnorderedElementsAre("traffic light",
+                                            "fire hydrant",
+                                            "stop sign",
+                                            "parking meter",
+                                            "bed",
+                                            "dining table",
+                                            "toilet",
+                                            "tv",
+                                            "microwave",
+                                            "oven",
+                                            "toaster",
+                                            "sink",
+                                            "refrigerator"));
+  for (const char* food : {"broccoli", "carrot", "hot dog", "donut", "cake", "pizza"}) {
+    EXPECT_EQ(table.of(food), Category::kPotentiallyDynamic) << food;
+  }
+}
+
+TEST(Categories, NamesOfPeopleAreDynamic) {
+  const CategoryTable table{CategoryConfig{}};
+  for (const char* name : {"Person", "pedestrian", "human", "Man", "worker"}) {
+    EXPECT_EQ(table.of(name), Category::kDynamic) << name;
+  }
+}
+
+TEST(Categories, SynonymsComeFromTheConfiguration) {
+  CategoryConfig config;
+  config.synonyms = " forklift = truck, Crash Dummy=human ";
+  const CategoryTable table(config);
+  EXPECT_EQ(table.of("Forklift"), Category::kPotentiallyDynamic);
+  EXPECT_EQ(table.of("crash_dummy"), Category::kDynamic);
+  EXPECT_TRUE(table.knows("FORKLIFT"));
+  EXPECT_TRUE(table.knows("sofa"));
+  EXPECT_FALSE(table.knows("stapler"));
+  EXPECT_FALSE(CategoryTable{CategoryConfig{}}.knows("forklift"));
+}
+
+TEST(Categories, BadSynonymsAreRefused) {
+  const auto make = [](const char* synonyms) {
+    return [=] {
+      CategoryConfig config;
+      config.synonyms = synonyms;
+      return CategoryTable(config);
+    };
+  };
+  const auto refuses = [](const char* what) {
+    return ThrowsMessage<Error>(AllOf(HasSubstr("categories.synonyms"), HasSubstr(what)));
+  };
+  EXPECT_THAT(make("forklift"), refuses("name=class"));
+  EXPECT_THAT(make("=person"), refuses("name=class"));
+  EXPECT_THAT(make("a=person,"), refuses("name=class"));
+  EXPECT_THAT(make("forklift="), refuses("empty"));
+  EXPECT_THAT(make("forklift=trukc"), refuses("did you mean 'truck'?"));
+  EXPECT_THAT(make("man=chair"), refuses("'man' means 'person' already"));
+  EXPECT_THAT(make("a=person, A=dog"), refuses("'A' means 'person' already"));
 }
 
 TEST(Categories, AnUnknownClassIsStatic) {

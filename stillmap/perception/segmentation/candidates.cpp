@@ -5,6 +5,8 @@
 #include <cmath>
 #include <tuple>
 
+#include <fmt/core.h>
+
 #include "stillmap/perception/detections/box_overlap.hpp"
 
 namespace stillmap {
@@ -24,6 +26,16 @@ bool better(const Candidate& a, const Candidate& b) {
 }
 
 }  // namespace
+
+bool is_no_probability(float score) {
+  constexpr float kTolerance = 0.01F;
+  return score < -kTolerance || score > 1 + kTolerance;
+}
+
+std::string no_probability_text(float score) {
+  return fmt::format("a score of {}, expected 0 to 1: the export has to end with probabilities",
+                     score);
+}
 
 std::vector<Candidate> suppress_overlaps(std::vector<Candidate> candidates, double max_overlap) {
   std::erase_if(candidates, [](const Candidate& candidate) { return !usable(candidate); });

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <opencv2/core/types.hpp>
@@ -20,6 +21,12 @@ struct Candidate {
 
   bool operator==(const Candidate&) const = default;
 };
+
+/// Whether a score cannot be a probability. Sums of half precision may go a little beyond [0, 1].
+[[nodiscard]] bool is_no_probability(float score);
+
+/// The words for such a score in an error message.
+[[nodiscard]] std::string no_probability_text(float score);
 
 /// Non-maximum suppression: of candidates of one class that overlap by more than `max_overlap` only
 /// the best remains. The result is sorted by descending score, then by source and label. Candidates

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "stillmap/perception/segmentation/centernet.hpp"
+#include "stillmap/perception/segmentation/detr.hpp"
 #include "stillmap/perception/segmentation/nanodet.hpp"
 #include "stillmap/perception/segmentation/ssd.hpp"
 #include "tests/support/files.hpp"
@@ -107,6 +108,46 @@ TEST(CenterNet, RefusesOtherShapes) {
                 (void)decode_centernet(heat.view(), sizes.view(), {30, 30}, 0.5F);
               }),
               HasSubstr("1x3x3x2 and 1x3x4x4"));
+}
+
+// Two queries, two classes, an input of 200x100.
+const Tensor kQueries{{1, 2, 4}, {0.5F, 0.5F, 0.2F, 0.4F, 0.1F, 0.1F, 0.1F, 0.1F}};
+
+void expect_the_first_query(const std::vector<Candidate>& found) {
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].label, 1);
+  EXPECT_NEAR(found[0].score, 0.75F, 1e-6);
+  expect_box(found[0], {80, 30, 120, 70});
+}
+
+TEST(Detr, SharesBecomePixels) {
+  const Tensor scores{{1, 2, 2}, {0.1F, 0.75F, 0.2F, 0.1F}};
+  const NetworkExport two{ExportKind::kDetr, {1, 0}, {"a", "b"}, false};
+  expect_the_first_query(decode_detr(detr_outputs(two, {scores, kQueries}), {200, 100}, 0.5F));
+  const NetworkExport one{ExportKind::kDetr, {0}, {"a", "b"}, false};
+  const Tensor both{{1, 2, 6},
+                    {0.5F, 0.5F, 0.2F, 0.4F, 0.1F, 0.75F, 0.1F, 0.1F, 0.1F, 0.1F, 0.2F, 0.1F}};
+  expect_the_first_query(decode_detr(detr_outputs(one, {both}), {200, 100}, 0.5F));
+}
+
+TEST(Detr, LogitsBecomeProbabilities) {
+  const Tensor logits{{2, 2}, {-3, std::log(3.0F), -2, -5}};  // 3 / (1 + 3)
+  const Tensor boxes{{2, 4}, kQueries.values};
+  expect_the_first_query(decode_detr({boxes, logits}, {200, 100}, 0.5F));
+}
+
+TEST(Detr, RefusesWhatDoesNotFit) {
+  const Tensor boxes{{2, 4}, kQueries.values};
+  EXPECT_THAT(error_of([&] {
+                (void)decode_detr({boxes, zeros({3, 2})}, {200, 100}, 0.5F);
+              }),
+              HasSubstr("2x4 and 3x2: expected 1xQx4 and 1xQxC"));
+  Tensor pixels = boxes;
+  pixels.values[0] = 100;
+  EXPECT_THAT(error_of([&] {
+                (void)decode_detr({pixels, zeros({2, 2})}, {200, 100}, 0.5F);
+              }),
+              HasSubstr("a side of a box at 100, expected shares of the image"));
 }
 
 struct SsdCase {

@@ -9,6 +9,7 @@
 #include "stillmap/core/error.hpp"
 #include "stillmap/core/joined.hpp"
 #include "stillmap/perception/detections/class_names.hpp"
+#include "stillmap/perception/segmentation/export_readings.hpp"
 
 namespace stillmap {
 namespace {
@@ -18,147 +19,127 @@ constexpr std::array<std::string_view, 20> kVoc = {
     "cat",       "chair",       "cow",   "diningtable", "dog",    "horse",    "motorbike",
     "person",    "pottedplant", "sheep", "sofa",        "train",  "tvmonitor"};
 
-using Shapes = std::vector<TensorShape>;
-
-// Names are added last, because the kind determines the number of classes.
-struct Found {
-  NetworkExport network;
-  std::int64_t classes = 0;
-  bool with_background = false;
-};
-
-std::vector<std::size_t> outputs_of_rank(const Shapes& shapes, std::size_t rank) {
-  std::vector<std::size_t> found;
-  for (std::size_t i = 0; i < shapes.size(); ++i) {
-    if (shapes[i].size() == rank) found.push_back(i);
-  }
-  return found;
-}
-
-std::optional<Found> as_class_map(const Shapes& shapes) {
-  if (shapes.size() != 1) return std::nullopt;
-  const TensorShape shape = without_batch(shapes[0], 2);
-  const bool are_labels = shape.size() == 2;
-  if (!are_labels && shape.size() != 3) return std::nullopt;
-  const std::int64_t classes =
-      are_labels ? static_cast<std::int64_t>(kVoc.size()) + 1 : std::min(shape[0], shape[2]);
-  return Found{{ExportKind::kClassMap, {0}, {}}, classes, true};
-}
-
-std::optional<Found> as_yolo(const Shapes& shapes) {
-  const std::vector<std::size_t> boxes = outputs_of_rank(shapes, 3);
-  const std::vector<std::size_t> prototypes = outputs_of_rank(shapes, 4);
-  if (shapes.size() != 2 || boxes.size() != 1 || prototypes.size() != 1) return std::nullopt;
-  const TensorShape& shape = shapes[boxes[0]];
-  const bool rows = shape[1] > shape[2];
-  const std::int64_t classes =
-      std::min(shape[1], shape[2]) - (rows ? 5 : 4) - shapes[prototypes[0]][1];
-  const ExportKind kind = rows ? ExportKind::kYoloRows : ExportKind::kYoloColumns;
-  return Found{{kind, {boxes[0], prototypes[0]}, {}}, classes, false};
-}
-
-std::optional<Found> as_ssd(const Shapes& shapes) {
-  const std::vector<std::size_t> maps = outputs_of_rank(shapes, 4);
-  const std::vector<std::size_t> anchors = outputs_of_rank(shapes, 2);
-  const std::vector<std::size_t> rows = outputs_of_rank(shapes, 3);
-  if (maps.size() != 1 || anchors.size() != 1 || rows.size() != 2) return std::nullopt;
-  const bool offsets_first = shapes[rows[0]][2] == 4;
-  const std::size_t offsets = rows[offsets_first ? 0 : 1], classes = rows[offsets_first ? 1 : 0];
-  if (shapes[offsets][2] != 4) return std::nullopt;
-  return Found{
-      {ExportKind::kSsd, {anchors[0], offsets, classes, maps[0]}, {}}, shapes[classes][2], true};
-}
-
-// Pairs of outputs with equal numbers of rows. All boxes have the same number of columns, a
-// multiple of 4, and all classes have the same number of columns, too.
-std::optional<Found> as_nanodet(const Shapes& shapes) {
-  const std::vector<std::size_t> rows = outputs_of_rank(shapes, 3);
-  if (shapes.size() < 4 || shapes.size() % 2 != 0 || rows.size() != shapes.size()) {
-    return std::nullopt;
-  }
-  Found found{{ExportKind::kNanoDet, {}, {}}, 0, false};
-  std::vector<std::size_t> order = rows;
-  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
-    return std::pair(shapes[a][1], shapes[a][2]) > std::pair(shapes[b][1], shapes[b][2]);
-  });
-  for (std::size_t i = 0; i < order.size(); i += 2) {
-    const TensorShape &scores = shapes[order[i]], &boxes = shapes[order[i + 1]];
-    const bool fit = scores[1] == boxes[1] && boxes[2] % 4 == 0 &&
-                     scores[2] == shapes[order[0]][2] && boxes[2] == shapes[order[1]][2];
-    if (!fit) return std::nullopt;
-    found.network.outputs.insert(found.network.outputs.end(), {order[i], order[i + 1]});
-    found.classes = scores[2];
-  }
-  return found;
-}
-
-std::optional<Found> as_centernet(const Shapes& shapes) {
-  if (shapes.size() != 2 || outputs_of_rank(shapes, 4).size() != 2) return std::nullopt;
-  const std::size_t sizes = shapes[0][3] == 4 ? 0 : 1;
-  if (shapes[sizes][3] != 4) return std::nullopt;
-  return Found{{ExportKind::kCenterNet, {1 - sizes, sizes}, {}}, shapes[1 - sizes][3], false};
-}
-
-// The names in the metadata of the network, else those of COCO or VOC, by their number.
-std::vector<std::string> class_names(const NetworkSignature& signature, const Found& found) {
-  const std::size_t background = found.with_background ? 1 : 0;
-  const auto count = static_cast<std::size_t>(std::max<std::int64_t>(found.classes, 0));
-  std::vector<std::string> names = quoted_words(signature.class_names);
-  if (names.size() == count) return names;
-  names.assign(background, "background");
-  if (count == coco_class_names().size() + background) {
+// The names of a number of classes: those in the network's metadata, else those of COCO or VOC.
+// Nothing if neither has as many. An open number goes with what there is.
+std::optional<std::vector<std::string>> names_of(const std::vector<std::string>& given,
+                                                 const ExportReading& reading) {
+  const std::size_t background = reading.with_background ? 1 : 0;
+  const bool is_map = reading.network.kind == ExportKind::kClassMap;
+  const std::size_t usual = is_map ? kVoc.size() : coco_class_names().size();
+  if (!reading.classes && !given.empty()) return given;
+  const auto count =
+      reading.classes ? static_cast<std::size_t>(*reading.classes) : usual + background;
+  if (!given.empty() && given.size() == count) return given;
+  std::vector<std::string> names(background, "background");
+  if (!given.empty()) {
+    names.insert(names.end(), given.begin(), given.end());
+  } else if (count == coco_class_names().size() + background) {
     names.insert(names.end(), coco_class_names().begin(), coco_class_names().end());
   } else if (count == kVoc.size() + background) {
     names.insert(names.end(), kVoc.begin(), kVoc.end());
   }
-  if (count == 0 || names.size() != count) {
-    throw Error(
-        "a network of {} classes without their names: expected those of COCO or VOC, or as many "
-        "names in its metadata entry 'names'",
-        found.classes);
-  }
+  if (names.size() != count) return std::nullopt;
   return names;
+}
+
+// Tasks of Ultralytics' exports whose outputs could be taken for others.
+void check_task(const std::string& task) {
+  for (const std::string_view other : {"classify", "pose", "obb"}) {
+    if (task != other) continue;
+    throw Error("a network for the task '{}': expected one that detects or segments objects", task);
+  }
+}
+
+bool is_vector(const TensorShape& shape) {
+  return without_batch(shape, 0).size() <= 1 ||
+         std::ranges::count_if(shape, [](std::int64_t size) { return size != 1; }) <= 1;
+}
+
+[[noreturn]] void refuse_unknown(const std::vector<Tensor>& outputs) {
+  std::vector<std::string> texts;
+  for (const Tensor& output : outputs) texts.push_back(shape_text(output.shape));
+  if (outputs.size() == 1 && is_vector(outputs[0].shape)) {
+    throw Error(
+        "a network with the output {}, as image classifiers have: expected one that says where "
+        "in the image objects are, by boxes or masks",
+        texts[0]);
+  }
+  throw Error(
+      "a network with the outputs {}: expected a class map, YOLO, RT-DETR, BlitzNet, NanoDet or "
+      "CenterNet (docs/segmentation.md has their shapes)",
+      joined(texts, ", "));
+}
+
+[[noreturn]] void refuse_names(const std::vector<std::string>& given,
+                               const ExportReading& reading) {
+  if (!given.empty()) {
+    throw Error("a network of {} classes with {} names in its metadata entry 'names': expected {}",
+                *reading.classes,
+                given.size(),
+                *reading.classes);
+  }
+  throw Error(
+      "a network of {} classes without their names: expected those of COCO or VOC, or as many "
+      "names in its metadata entry 'names'",
+      *reading.classes);
 }
 
 }  // namespace
 
 TensorShape image_input_shape(const NetworkSignature& signature, cv::Size image) {
+  constexpr std::int64_t kMostBatch = 64;
   const TensorShape shape =
       signature.inputs.size() == 1 ? signature.inputs[0].shape : TensorShape();
   const bool first = shape.size() == 4 && shape[1] == 3;
   const bool last = shape.size() == 4 && !first && shape[3] == 3;
-  if ((!first && !last) || shape[0] > 1) {
-    throw Error("a network with the input {}: expected one image, 1x3xHxW or 1xHxWx3",
-                shape_text(shape));
+  if ((!first && !last) || shape[0] > kMostBatch) {
+    std::vector<std::string> texts;
+    for (const NamedShape& input : signature.inputs) texts.push_back(shape_text(input.shape));
+    throw Error(
+        "a network with the inputs {}: expected one image, 1x3xHxW or 1xHxWx3, or at most {} in "
+        "one "
+        "batch",
+        texts.empty() ? "none" : joined(texts, ", "),
+        kMostBatch);
   }
   constexpr std::int64_t kStep = 32, kMostSide = 8192;
   const auto size_or = [&](std::int64_t size, int image_size) {
     return size > 0 ? size : (image_size + kStep - 1) / kStep * kStep;
   };
+  const std::int64_t batch = std::max<std::int64_t>(shape[0], 1);
   const std::int64_t height = size_or(shape[first ? 2 : 1], image.height);
   const std::int64_t width = size_or(shape[first ? 3 : 2], image.width);
-  if (height > kMostSide || width > kMostSide) {
-    throw Error("a network for images of {}x{} pixels, expected at most {} a side",
+  TensorShape input =
+      first ? TensorShape{batch, 3, height, width} : TensorShape{batch, height, width, 3};
+  if (height > kMostSide || width > kMostSide || element_count(input) < 0) {
+    throw Error("a network for {} images of {}x{} pixels, expected at most {} a side",
+                batch,
                 width,
                 height,
                 kMostSide);
   }
-  return first ? TensorShape{1, 3, height, width} : TensorShape{1, height, width, 3};
+  return input;
 }
 
-NetworkExport identify_export(const NetworkSignature& signature, const Shapes& outputs) {
-  for (const auto& kind : {as_class_map, as_yolo, as_ssd, as_nanodet, as_centernet}) {
-    std::optional<Found> found = kind(outputs);
-    if (!found) continue;
-    found->network.names = class_names(signature, *found);
-    return std::move(found->network);
+NetworkExport identify_export(const NetworkSignature& signature,
+                              const std::vector<Tensor>& outputs,
+                              cv::Size input) {
+  check_task(signature.task);
+  const std::vector<ExportReading> readings = readings_of(outputs, input);
+  if (readings.empty()) refuse_unknown(outputs);
+  const std::vector<std::string> given = quoted_words(signature.class_names);
+  std::string objection;
+  for (const ExportReading& reading : readings) {
+    std::optional<std::vector<std::string>> names = names_of(given, reading);
+    if (!names) continue;
+    NetworkExport network = reading.network;
+    network.names = *std::move(names);
+    const std::string problem = contradiction(network, outputs);
+    if (problem.empty()) return network;
+    if (objection.empty()) objection = problem;
   }
-  std::vector<std::string> texts;
-  for (const TensorShape& shape : outputs) texts.push_back(shape_text(shape));
-  throw Error(
-      "a network with the outputs {}: expected a class map, YOLO segmentation, BlitzNet, NanoDet "
-      "or CenterNet",
-      joined(texts, ", "));
+  if (objection.empty()) refuse_names(given, readings.front());
+  throw Error("the network's output for an empty image: {}", objection);
 }
 
 std::vector<std::string> quoted_words(std::string_view text) {

@@ -169,8 +169,7 @@ struct YoloCase {
 };
 
 void expect_yolo(const YoloOutputs& outputs) {
-  EXPECT_EQ(yolo_class_count(outputs), 2);
-  const std::vector<Candidate> found = decode_yolo_boxes(outputs, 0.3F);
+  const std::vector<Candidate> found = decode_yolo_boxes(outputs, 2, 0.3F);
   ASSERT_EQ(found.size(), 2U);
   EXPECT_EQ(found[0].label, 1);
   EXPECT_FLOAT_EQ(found[0].score, 0.4F);
@@ -206,14 +205,60 @@ TEST(Yolo, Columns) {
   expect_yolo({YoloLayout::kColumns, boxes.view(), yolo.prototypes.view()});
 }
 
+TEST(Yolo, EndToEnd) {
+  const YoloCase yolo;
+  Tensor boxes = zeros({1, 3, 8});
+  // {x0, y0, x1, y1, score, class, coefficients p, q}; the last row holds nothing.
+  boxes.values = {4,  6,  12, 10, 0.4F, 1,  1, 0,   //
+                  16, 12, 24, 20, 0.9F, 0,  0, -1,  //
+                  0,  0,  0,  0,  0,    -1, 0, 0};
+  expect_yolo({YoloLayout::kFinal, boxes.view(), yolo.prototypes.view()});
+}
+
+// Networks that suppress overlaps themselves may give as many rows as there are objects.
+TEST(Yolo, EndToEndWithoutObjects) {
+  const Tensor none{{1, 0, 6}, {}};
+  EXPECT_THAT(decode_yolo_boxes({YoloLayout::kFinal, none.view(), {}}, 80, 0.3F),
+              testing::IsEmpty());
+}
+
+TEST(Yolo, WithoutPrototypesBoxesAlone) {
+  // One class: {x, y, w, h, objectness, class} and {x, y, w, h, class}.
+  const Tensor rows{{1, 2, 6}, {8, 8, 8, 4, 0.5F, 0.8F, 1, 1, 1, 1, 0.1F, 1}};
+  const Tensor columns{{1, 5, 2}, {8, 1, 8, 1, 8, 1, 4, 1, 0.4F, 0.1F}};
+  for (const YoloOutputs& outputs : {YoloOutputs{YoloLayout::kRows, rows.view(), {}},
+                                     YoloOutputs{YoloLayout::kColumns, columns.view(), {}}}) {
+    const std::vector<Candidate> found = decode_yolo_boxes(outputs, 1, 0.3F);
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_FLOAT_EQ(found[0].score, 0.4F);
+    const std::vector<FoundObject> objects = yolo_objects(
+        outputs, found, {"person"}, InputPlacement::stretch({16, 16}, {32, 32}), {16, 16});
+    ASSERT_EQ(objects.size(), 1U);
+    EXPECT_EQ(objects[0].box, (PixelBox{2, 3, 6, 5}));
+    EXPECT_TRUE(objects[0].mask.empty());
+  }
+}
+
+TEST(Yolo, RefusesScoresAndClassesThatAreNone) {
+  const auto refusal = [](std::vector<float> row) {
+    const Tensor boxes{{1, 1, 6}, std::move(row)};
+    return error_of([&] {
+      (void)decode_yolo_boxes({YoloLayout::kFinal, boxes.view(), {}}, 2, 0.3F);
+    });
+  };
+  EXPECT_THAT(refusal({0, 0, 5, 5, 1.5F, 0}), HasSubstr("a score of 1.5, expected 0 to 1"));
+  EXPECT_THAT(refusal({0, 0, 5, 5, 0.9F, 2}), HasSubstr("a class number of 2, expected"));
+  EXPECT_THAT(refusal({0, 0, 5, 5, 0.9F, std::nanf("")}), HasSubstr("a class number of nan"));
+}
+
 TEST(Yolo, RefusesOtherShapes) {
   const YoloCase yolo;
   const Tensor boxes = zeros({1, 6, 12});
-  EXPECT_THAT(
-      error_of([&] {
-        (void)decode_yolo_boxes({YoloLayout::kColumns, boxes.view(), yolo.prototypes.view()}, 0.3F);
-      }),
-      HasSubstr("1x6x12 and 1x2x8x8"));
+  EXPECT_THAT(error_of([&] {
+                (void)decode_yolo_boxes(
+                    {YoloLayout::kColumns, boxes.view(), yolo.prototypes.view()}, 2, 0.3F);
+              }),
+              HasSubstr("1x6x12 and 1x2x8x8"));
 }
 
 TEST(AssembleDetections, BetterObjectHasThePixel) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct NetworkSignature {
   std::vector<NamedShape> inputs;
   std::vector<NamedShape> outputs;
   std::string class_names;  ///< the metadata entry `names`; empty if there is none
+  std::string task;         ///< the metadata entry `task` of Ultralytics' exports; or empty
 };
 
 /// A network with one image input. run() may be called from several threads and gives the same bits
@@ -35,5 +37,11 @@ class Network {
   /// fails.
   [[nodiscard]] virtual std::vector<Tensor> run(const Tensor& input) const = 0;
 };
+
+/// Runs a network on one image, `input`, and gives the outputs for it. Networks that take `batch`
+/// images at once get it as the first, the others empty.
+[[nodiscard]] std::vector<Tensor> run_on_image(const Network& network,
+                                               Tensor input,
+                                               std::int64_t batch);
 
 }  // namespace stillmap

@@ -4,13 +4,17 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include <opencv2/core.hpp>
 
 #include "stillmap/core/error.hpp"
+#include "stillmap/perception/detections/class_names.hpp"
 #include "stillmap/perception/segmentation/centernet.hpp"
 #include "stillmap/perception/segmentation/class_map.hpp"
+#include "stillmap/perception/segmentation/detr.hpp"
+#include "stillmap/perception/segmentation/export_readings.hpp"
 #include "stillmap/perception/segmentation/matting.hpp"
 #include "stillmap/perception/segmentation/nanodet.hpp"
 #include "stillmap/perception/segmentation/ssd.hpp"
@@ -20,7 +24,10 @@ namespace stillmap {
 namespace {
 
 constexpr double kMaxOverlap = 0.5;  // IoU of two boxes of a class
+constexpr double kMaxOverlapOfFinal =
+    0.9;  // the same of networks that suppress overlaps themselves
 constexpr float kYoloScore = 0.25F;
+constexpr float kDetrScore = 0.3F;
 constexpr float kSsdScore = 0.4F;
 constexpr float kNanoDetScore = 0.35F;
 constexpr float kCenterNetScore = 0.28F;
@@ -59,7 +66,10 @@ InputFormat format_of(ExportKind kind, bool last) {
       break;
     case ExportKind::kYoloRows:
     case ExportKind::kYoloColumns:
+    case ExportKind::kYoloFinal:
       format.padding = 114;
+      break;
+    case ExportKind::kDetr:
       break;
     case ExportKind::kNanoDet:
       format.blue_first = true;
@@ -72,15 +82,9 @@ InputFormat format_of(ExportKind kind, bool last) {
 
 InputPlacement placement_of(ExportKind kind, cv::Size image, cv::Size input) {
   const bool keeps_shape = kind == ExportKind::kYoloRows || kind == ExportKind::kYoloColumns ||
-                           kind == ExportKind::kNanoDet;
+                           kind == ExportKind::kYoloFinal || kind == ExportKind::kNanoDet;
   return keeps_shape ? InputPlacement::letterbox(image, input)
                      : InputPlacement::stretch(image, input);
-}
-
-std::vector<TensorShape> shapes_of(const std::vector<Tensor>& outputs) {
-  std::vector<TensorShape> shapes;
-  for (const Tensor& output : outputs) shapes.push_back(output.shape);
-  return shapes;
 }
 
 // The stride at which the cells of a level cover the input.
@@ -89,13 +93,9 @@ int stride_of(std::int64_t cells, cv::Size input) {
   return std::max(1, static_cast<int>(std::lround(std::sqrt(area / static_cast<double>(cells)))));
 }
 
-bool map_channels_last(const TensorShape& shape) {
-  return shape.size() >= 3 && shape.back() < shape[shape.size() - 3];
-}
-
 bool is_person(const std::vector<std::string>& names, int label) {
   const auto index = static_cast<std::size_t>(label);
-  return index < names.size() && names[index] == "person";
+  return index < names.size() && coco_name(names[index]) == "person";
 }
 
 PixelBox scaled(const PixelBox& box, double scale) {
@@ -103,7 +103,9 @@ PixelBox scaled(const PixelBox& box, double scale) {
   return {box.x0 - x, box.y0 - y, box.x1 + x, box.y1 + y};
 }
 
-Tensor empty_input(const TensorShape& shape) {
+// One image without content, of a batch's shape.
+Tensor empty_image(TensorShape shape) {
+  shape[0] = 1;
   return {shape, std::vector<float>(static_cast<std::size_t>(element_count(shape)))};
 }
 
@@ -112,31 +114,31 @@ Tensor empty_input(const TensorShape& shape) {
 ImageNetwork::ImageNetwork(std::unique_ptr<Network> network, cv::Size image)
     : network_(std::move(network)), image_(image) {
   const TensorShape shape = image_input_shape(network_->signature(), image);
-  export_ = identify_export(network_->signature(), shapes_of(network_->run(empty_input(shape))));
   const bool last = channels_last(shape);
-  placement_ = placement_of(export_.kind, image, plane_size(shape, last));
+  const cv::Size input = plane_size(shape, last);
+  batch_ = shape[0];
+  export_ = identify_export(
+      network_->signature(), run_on_image(*network_, empty_image(shape), batch_), input);
+  placement_ = placement_of(export_.kind, image, input);
   format_ = format_of(export_.kind, last);
 }
 
 std::vector<FoundObject> ImageNetwork::find(const ColorImage& color) const {
   STILLMAP_CHECK(color.mat.size() == image_);
-  return decode(network_->run(make_input(color, placement_, format_)));
+  return decode(run_on_image(*network_, make_input(color, placement_, format_), batch_));
 }
 
 std::vector<FoundObject> ImageNetwork::decode(const std::vector<Tensor>& outputs) const {
   switch (export_.kind) {
-    case ExportKind::kClassMap: {
-      const Tensor& map = outputs.at(export_.outputs[0]);
-      return objects_of_class_map(
-          decode_class_map(map.view(), map_channels_last(map.shape), placement_, image_),
-          export_.names,
-          ComponentOptions());
-    }
+    case ExportKind::kClassMap:
+      return decode_map(outputs);
     case ExportKind::kYoloRows:
     case ExportKind::kYoloColumns:
+    case ExportKind::kYoloFinal:
       return decode_yolo(outputs);
     case ExportKind::kSsd:
       return decode_ssd_and_map(outputs);
+    case ExportKind::kDetr:
     case ExportKind::kNanoDet:
     case ExportKind::kCenterNet:
       return decode_boxes(outputs);
@@ -144,13 +146,23 @@ std::vector<FoundObject> ImageNetwork::decode(const std::vector<Tensor>& outputs
   return {};
 }
 
+std::vector<FoundObject> ImageNetwork::decode_map(const std::vector<Tensor>& outputs) const {
+  // What an empty image does not show, an image can: numbers of classes that have no name.
+  const std::string problem = contradiction(export_, outputs);
+  if (!problem.empty()) throw Error("the network's output: {}", problem);
+  return objects_of_class_map(
+      decode_class_map(
+          outputs.at(export_.outputs[0]).view(), export_.channels_last, placement_, image_),
+      export_.names,
+      ComponentOptions());
+}
+
 std::vector<FoundObject> ImageNetwork::decode_yolo(const std::vector<Tensor>& outputs) const {
-  const bool rows = export_.kind == ExportKind::kYoloRows;
-  const YoloOutputs yolo{rows ? YoloLayout::kRows : YoloLayout::kColumns,
-                         outputs.at(export_.outputs[0]).view(),
-                         outputs.at(export_.outputs[1]).view()};
+  const YoloOutputs yolo = yolo_outputs(export_, outputs);
+  const bool is_final = export_.kind == ExportKind::kYoloFinal;
   const std::vector<Candidate> candidates =
-      suppress_overlaps(decode_yolo_boxes(yolo, kYoloScore), kMaxOverlap);
+      suppress_overlaps(decode_yolo_boxes(yolo, export_.names.size(), kYoloScore),
+                        is_final ? kMaxOverlapOfFinal : kMaxOverlap);
   return yolo_objects(yolo, candidates, export_.names, placement_, image_);
 }
 
@@ -163,33 +175,41 @@ std::vector<FoundObject> ImageNetwork::decode_ssd_and_map(
   const std::vector<Candidate> candidates =
       suppress_overlaps(decode_ssd(ssd, placement_.input, kSsdScore), kMaxOverlap);
   const std::vector<std::string> without_background(export_.names.begin() + 1, export_.names.end());
-  return with_class_pixels(
-      name_candidates(to_image(candidates, placement_), without_background),
-      decode_class_map(map.view(), map_channels_last(map.shape), placement_, image_),
-      export_.names);
+  return with_class_pixels(name_candidates(to_image(candidates, placement_), without_background),
+                           decode_class_map(map.view(), export_.channels_last, placement_, image_),
+                           export_.names);
+}
+
+std::vector<Candidate> ImageNetwork::decode_nanodet_levels(
+    const std::vector<Tensor>& outputs) const {
+  std::vector<NanoDetLevel> levels;
+  for (std::size_t i = 0; i + 1 < export_.outputs.size(); i += 2) {
+    const Tensor& scores = outputs.at(export_.outputs[i]);
+    levels.push_back({stride_of(scores.shape.at(1), placement_.input),
+                      scores.view(),
+                      outputs.at(export_.outputs[i + 1]).view()});
+  }
+  std::vector<Candidate> candidates = decode_nanodet(levels, placement_.input, kNanoDetPersonScore);
+  std::erase_if(candidates, [&](const Candidate& candidate) {
+    return candidate.score < kNanoDetScore && !is_person(export_.names, candidate.label);
+  });
+  return candidates;
 }
 
 std::vector<FoundObject> ImageNetwork::decode_boxes(const std::vector<Tensor>& outputs) const {
   std::vector<Candidate> candidates;
-  if (export_.kind == ExportKind::kNanoDet) {
-    std::vector<NanoDetLevel> levels;
-    for (std::size_t i = 0; i + 1 < export_.outputs.size(); i += 2) {
-      const Tensor& scores = outputs.at(export_.outputs[i]);
-      levels.push_back({stride_of(scores.shape.at(1), placement_.input),
-                        scores.view(),
-                        outputs.at(export_.outputs[i + 1]).view()});
-    }
-    candidates = decode_nanodet(levels, placement_.input, kNanoDetPersonScore);
-    std::erase_if(candidates, [&](const Candidate& candidate) {
-      return candidate.score < kNanoDetScore && !is_person(export_.names, candidate.label);
-    });
+  if (export_.kind == ExportKind::kDetr) {
+    candidates = decode_detr(detr_outputs(export_, outputs), placement_.input, kDetrScore);
+  } else if (export_.kind == ExportKind::kNanoDet) {
+    candidates = decode_nanodet_levels(outputs);
   } else {
     candidates = decode_centernet(outputs.at(export_.outputs[0]).view(),
                                   outputs.at(export_.outputs[1]).view(),
                                   placement_.input,
                                   kCenterNetScore);
   }
-  candidates = suppress_overlaps(std::move(candidates), kMaxOverlap);
+  candidates = suppress_overlaps(
+      std::move(candidates), export_.kind == ExportKind::kDetr ? kMaxOverlapOfFinal : kMaxOverlap);
   return name_candidates(to_image(std::move(candidates), placement_), export_.names);
 }
 
@@ -213,7 +233,7 @@ PersonSegmenter::PersonSegmenter(std::unique_ptr<Network> detector,
 FrameDetections PersonSegmenter::segment(const ColorImage& color, const Stamp& stamp) const {
   std::vector<FoundObject> objects;
   for (FoundObject& object : detector_.find(color)) {
-    if (object.class_name != "person") {
+    if (coco_name(object.class_name) != "person") {
       objects.push_back(std::move(object));
     } else if (std::optional<FoundObject> person = with_mask(std::move(object), color)) {
       objects.push_back(*std::move(person));
@@ -229,8 +249,8 @@ std::optional<FoundObject> PersonSegmenter::with_mask(FoundObject person,
   const bool last = channels_last(crop_shape_);
   const InputPlacement placement =
       InputPlacement::crop(crop_square(*box, kCropScale), plane_size(crop_shape_, last));
-  const std::vector<Tensor> outputs =
-      matting_->run(make_input(color, placement, {.channels_last = last}));
+  const std::vector<Tensor> outputs = run_on_image(
+      *matting_, make_input(color, placement, {.channels_last = last}), crop_shape_[0]);
   if (outputs.empty()) throw Error("a person's mask: the network has no output");
   person.box = scaled(*box, kBoxScale);
   person = with_matting(std::move(person), outputs[0].view(), threshold_, placement, image_);

@@ -20,18 +20,22 @@ class ImageNetwork {
   ImageNetwork(std::unique_ptr<Network> network, cv::Size image);
 
   /// The objects in an image, with the thresholds of score and overlap that are usual for the kind.
-  /// Those of NanoDet and CenterNet have no masks.
+  /// Those of a kind that gives boxes only have no masks.
   [[nodiscard]] std::vector<FoundObject> find(const ColorImage& color) const;
 
  private:
   [[nodiscard]] std::vector<FoundObject> decode(const std::vector<Tensor>& outputs) const;
+  [[nodiscard]] std::vector<FoundObject> decode_map(const std::vector<Tensor>& outputs) const;
   [[nodiscard]] std::vector<FoundObject> decode_yolo(const std::vector<Tensor>& outputs) const;
   [[nodiscard]] std::vector<FoundObject> decode_ssd_and_map(
+      const std::vector<Tensor>& outputs) const;
+  [[nodiscard]] std::vector<Candidate> decode_nanodet_levels(
       const std::vector<Tensor>& outputs) const;
   [[nodiscard]] std::vector<FoundObject> decode_boxes(const std::vector<Tensor>& outputs) const;
 
   std::unique_ptr<Network> network_;
   cv::Size image_;
+  std::int64_t batch_ = 1;
   NetworkExport export_;
   InputPlacement placement_;
   InputFormat format_;

@@ -72,6 +72,44 @@ TEST(NetworkSegmenter, ClassMapBecomesObjects) {
 
 // NanoDet with one cell of 64 pixels: at its middle a person or, with label 1, another thing, whose
 // box reaches half a stride to each side.
+// Only the first image of the batch is white at the person.
+TEST(NetworkSegmenter, GivesABatchItsFirstImage) {
+  const NetworkSegmenter segmenter(
+      std::make_unique<FunctionNetwork>(
+          TensorShape{3, 3, 96, 128},
+          [](const Tensor& input) {
+            Tensor first = input;
+            first.shape[0] = 1;
+            first.values.resize(input.values.size() / 3);
+            Tensor all = person_where_positive(first);
+            EXPECT_EQ(cv::norm(cv::Mat(input.values).rowRange(3 * 96 * 128, 9 * 96 * 128)), 0);
+            all.shape[0] = 3;
+            all.values.resize(all.values.size() * 3, 9.0F);
+            return std::vector{all};
+          }),
+      kImage);
+  const FrameDetections found = segmenter.segment(person_at({10, 8, 24, 30}), kStamp);
+  ASSERT_EQ(found.objects.size(), 1U);
+  EXPECT_EQ(found.objects[0].box, (PixelBox{10, 8, 34, 38}));
+}
+
+// Half an image of 64x48 on 64x64 with 8 rows of padding above: rows (x0, y0, x1, y1, score,
+// class).
+TEST(NetworkSegmenter, EndToEndBoxesInPixelsOfTheImage) {
+  const NetworkSegmenter segmenter(
+      std::make_unique<FunctionNetwork>(
+          TensorShape{1, 3, 64, 64},
+          [](const Tensor&) {
+            return std::vector{Tensor{{1, 2, 6}, {10, 18, 30, 48, 0.9F, 0, 0, 0, 0, 0, 0, 0}}};
+          }),
+      kImage);
+  const FrameDetections found = segmenter.segment(person_at({0, 0, 4, 4}), kStamp);
+  ASSERT_EQ(found.objects.size(), 1U);
+  EXPECT_EQ(found.objects[0].class_name, "person");
+  EXPECT_EQ(found.objects[0].box, (PixelBox{10, 10, 30, 40}));
+  EXPECT_TRUE(found.mask.mat.empty());
+}
+
 Run nanodet(float person, float other) {
   return [=](const Tensor&) {
     Tensor scores = zeros({1, 1, 80}), fine_scores = zeros({1, 4, 80});

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cstring>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include <dlfcn.h>
@@ -84,12 +85,19 @@ Ort::SessionOptions session_options(const OnnxOptions& options) {
 }
 
 template <class Number>
+float to_float(Number number) {
+  if constexpr (std::is_same_v<Number, Ort::Float16_t>) {
+    return number.ToFloat();
+  } else {
+    return static_cast<float>(number);
+  }
+}
+
+template <class Number>
 std::vector<float> to_floats(const Ort::Value& value, std::size_t count) {
   const Number* const first = value.GetTensorData<Number>();
   std::vector<float> floats(count);
-  std::transform(first, first + count, floats.begin(), [](Number number) {
-    return static_cast<float>(number);
-  });
+  std::transform(first, first + count, floats.begin(), to_float<Number>);
   return floats;
 }
 
@@ -103,6 +111,8 @@ Tensor to_tensor(const Ort::Value& value, const std::string& name) {
   switch (info.GetElementType()) {
     case ONNX_TENSOR_ELEMENT_DATA_TYPE_FLOAT:
       return {shape, to_floats<float>(value, size)};
+    case ONNX_TENSOR_ELEMENT_DATA_TYPE_FLOAT16:
+      return {shape, to_floats<Ort::Float16_t>(value, size)};
     case ONNX_TENSOR_ELEMENT_DATA_TYPE_INT64:
       return {shape, to_floats<std::int64_t>(value, size)};
     case ONNX_TENSOR_ELEMENT_DATA_TYPE_INT32:
@@ -153,10 +163,17 @@ class OnnxNetwork : public Network {
       signature_.outputs.push_back({session_->GetOutputNameAllocated(i, allocator).get(),
                                     shape_of(session_->GetOutputTypeInfo(i))});
     }
-    const Ort::AllocatedStringPtr names =
-        session_->GetModelMetadata().LookupCustomMetadataMapAllocated("names", allocator);
-    if (names != nullptr) signature_.class_names = names.get();
+    signature_.class_names = metadata("names");
+    signature_.task = metadata("task");
     check_input();
+  }
+
+  // Empty if the network has no such entry.
+  [[nodiscard]] std::string metadata(const char* key) const {
+    const Ort::AllocatorWithDefaultOptions allocator;
+    const Ort::AllocatedStringPtr text =
+        session_->GetModelMetadata().LookupCustomMetadataMapAllocated(key, allocator);
+    return text == nullptr ? std::string() : std::string(text.get());
   }
 
   static TensorShape shape_of(const Ort::TypeInfo& info) {
@@ -164,21 +181,35 @@ class OnnxNetwork : public Network {
     return info.GetTensorTypeAndShapeInfo().GetShape();
   }
 
-  void check_input() const {
+  void check_input() {
     const bool is_one_tensor = signature_.inputs.size() == 1 && !signature_.inputs[0].shape.empty();
-    if (!is_one_tensor ||
-        session_->GetInputTypeInfo(0).GetTensorTypeAndShapeInfo().GetElementType() !=
-            ONNX_TENSOR_ELEMENT_DATA_TYPE_FLOAT) {
+    if (is_one_tensor) {
+      input_type_ = session_->GetInputTypeInfo(0).GetTensorTypeAndShapeInfo().GetElementType();
+    }
+    if (!is_one_tensor || (input_type_ != ONNX_TENSOR_ELEMENT_DATA_TYPE_FLOAT &&
+                           input_type_ != ONNX_TENSOR_ELEMENT_DATA_TYPE_FLOAT16)) {
       throw Error("{}: expected a network with one image of floats as its input", file_.string());
     }
   }
 
   [[nodiscard]] std::vector<Tensor> checked_run(const Tensor& input) const {
-    const Ort::MemoryInfo memory = Ort::MemoryInfo::CreateCpu(OrtArenaAllocator, OrtMemTypeDefault);
+    if (input_type_ == ONNX_TENSOR_ELEMENT_DATA_TYPE_FLOAT16) {
+      std::vector<Ort::Float16_t> halves;
+      halves.reserve(input.values.size());
+      for (const float value : input.values) halves.emplace_back(value);
+      return run_session(halves, input.shape);
+    }
     // The interface takes input by a non-const pointer, so it gets a copy.
     std::vector<float> values = input.values;
-    const Ort::Value value = Ort::Value::CreateTensor<float>(
-        memory, values.data(), values.size(), input.shape.data(), input.shape.size());
+    return run_session(values, input.shape);
+  }
+
+  template <class Number>
+  [[nodiscard]] std::vector<Tensor> run_session(std::vector<Number>& input,
+                                                const TensorShape& shape) const {
+    const Ort::MemoryInfo memory = Ort::MemoryInfo::CreateCpu(OrtArenaAllocator, OrtMemTypeDefault);
+    const Ort::Value value = Ort::Value::CreateTensor<Number>(
+        memory, input.data(), input.size(), shape.data(), shape.size());
     const std::vector<const char*> inputs = pointers(signature_.inputs);
     const std::vector<const char*> outputs = pointers(signature_.outputs);
     const std::vector<Ort::Value> results = session_->Run(
@@ -193,6 +224,7 @@ class OnnxNetwork : public Network {
   std::filesystem::path file_;
   std::unique_ptr<Ort::Session> session_;
   NetworkSignature signature_;
+  ONNXTensorElementDataType input_type_ = ONNX_TENSOR_ELEMENT_DATA_TYPE_FLOAT;
 };
 
 }  // namespace

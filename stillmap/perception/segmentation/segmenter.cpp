@@ -8,6 +8,7 @@
 #include "stillmap/core/error.hpp"
 #include "stillmap/io/atomic_file.hpp"
 #include "stillmap/perception/detections/detections_io.hpp"
+#include "stillmap/perception/segmentation/mask_folder.hpp"
 #include "stillmap/perception/segmentation/model_folder.hpp"
 #include "stillmap/perception/segmentation/network_segmenter.hpp"
 #include "stillmap/perception/segmentation/onnx_runtime.hpp"
@@ -46,34 +47,56 @@ std::unique_ptr<Segmenter> make_person_segmenter(cv::Size image, const Segmenter
   return std::make_unique<PersonSegmenter>(std::move(detector), std::move(matting), kPerson, image);
 }
 
-std::unique_ptr<Segmenter> make_network_segmenter(const fs::path& file,
-                                                  cv::Size image,
-                                                  const SegmenterOptions& options) {
-  std::unique_ptr<Network> network = open_onnx_network(file, {options.threads});
+// Calls what may fail; names the file in the message where that does not.
+template <class Call>
+auto naming_file(const fs::path& file, const Call& call) {
   try {
-    return std::make_unique<NetworkSegmenter>(std::move(network), image);
+    return call();
   } catch (const Error& error) {
     const std::string text = error.what();
     throw Error(text.starts_with(file.string()) ? text : file.string() + ": " + text);
   }
 }
 
+// One network of a file.
+class FileSegmenter : public Segmenter {
+ public:
+  FileSegmenter(fs::path file, cv::Size image, const SegmenterOptions& options)
+      : file_(std::move(file)), network_(naming_file(file_, [&] {
+          return std::make_unique<NetworkSegmenter>(open_onnx_network(file_, {options.threads}),
+                                                    image);
+        })) {}
+
+  [[nodiscard]] FrameDetections segment(const ColorImage& color,
+                                        const Stamp& stamp) const override {
+    return naming_file(file_, [&] { return network_->segment(color, stamp); });
+  }
+
+ private:
+  fs::path file_;
+  std::unique_ptr<NetworkSegmenter> network_;
+};
+
 }  // namespace
 
 std::unique_ptr<Segmenter> make_segmenter(std::string_view description,
                                           cv::Size image,
                                           const SegmenterOptions& options) {
-  constexpr std::string_view kFolder = "detections:", kNetwork = "onnx:";
+  constexpr std::string_view kFolder = "detections:", kMasks = "masks:", kNetwork = "onnx:";
   if (description == "auto" || description == "onnx:auto") {
     return make_person_segmenter(image, options);
   }
   if (description.starts_with(kFolder) && description.size() > kFolder.size()) {
     return std::make_unique<FolderSegmenter>(description.substr(kFolder.size()), image);
   }
-  if (description.starts_with(kNetwork) && description.size() > kNetwork.size()) {
-    return make_network_segmenter(description.substr(kNetwork.size()), image, options);
+  if (description.starts_with(kMasks) && description.size() > kMasks.size()) {
+    return std::make_unique<MaskFolder>(
+        description.substr(kMasks.size()), image, options.image_names);
   }
-  throw Error("{}: expected detections:DIR, onnx:MODEL.onnx or auto", description);
+  if (description.starts_with(kNetwork) && description.size() > kNetwork.size()) {
+    return std::make_unique<FileSegmenter>(description.substr(kNetwork.size()), image, options);
+  }
+  throw Error("{}: expected detections:DIR, masks:DIR, onnx:MODEL.onnx or auto", description);
 }
 
 }  // namespace stillmap

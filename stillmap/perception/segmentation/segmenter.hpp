@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <memory>
+#include <string>
 #include <string_view>
 
 #include <opencv2/core/types.hpp>
@@ -30,12 +32,16 @@ class Segmenter {
 /// What a segmenter may use.
 struct SegmenterOptions {
   int threads = 2;  ///< number of threads for one run of a network
+  /// The names of the images' files without their ending, by the text of the images' stamps: masks
+  /// may be named after them. Images that are not in it are known by their stamp.
+  std::map<std::string, std::string> image_names = {};
 };
 
-/// Makes a segmenter from its description: `detections:DIR`, a folder of detections;
-/// `onnx:MODEL.onnx`, one network (see ExportKind); `auto` or `onnx:auto`, the networks that
-/// tools/fetch_models gets. `image` is the size of the images. Throws Error, in one line with
-/// advice, for any other description and for missing files.
+/// Makes a segmenter from its description: `detections:DIR`, a folder of detections; `masks:DIR`, a
+/// folder of plain masks of people (see MaskFolder); `onnx:MODEL.onnx`, one network (see
+/// ExportKind); `auto` or `onnx:auto`, the networks that tools/fetch_models gets. `image` is the
+/// size of the images. Throws Error, in one line with advice, for any other description and for
+/// missing files.
 [[nodiscard]] std::unique_ptr<Segmenter> make_segmenter(std::string_view description,
                                                         cv::Size image,
                                                         const SegmenterOptions& options = {});

@@ -17,6 +17,7 @@
 #include "stillmap/perception/segmentation/model_folder.hpp"
 #include "stillmap/perception/segmentation/onnx_runtime.hpp"
 #include "tests/support/files.hpp"
+#include "tests/support/onnx_file.hpp"
 #include "tests/support/shared_data.hpp"
 
 namespace stillmap {
@@ -53,8 +54,9 @@ std::string refusal(const std::string& description) {
 }
 
 TEST(MakeSegmenter, NamesWhatItExpects) {
-  for (const char* description : {"", "yes", "detections:", "onnx:", "Auto", "none"}) {
-    EXPECT_THAT(refusal(description), HasSubstr("detections:DIR, onnx:MODEL.onnx or auto"));
+  for (const char* description : {"", "yes", "detections:", "masks:", "onnx:", "Auto", "none"}) {
+    EXPECT_THAT(refusal(description),
+                HasSubstr("detections:DIR, masks:DIR, onnx:MODEL.onnx or auto"));
   }
 }
 
@@ -179,6 +181,48 @@ TEST_F(OnnxNetworks, FailuresNameTheFile) {
               testing::AllOf(HasSubstr("broken.onnx: "), HasSubstr("expected an ONNX network")));
   EXPECT_THAT(refusal("onnx:" + path("sums.onnx").string()),
               testing::AllOf(HasSubstr("sums.onnx: "), HasSubstr("expected a class map")));
+}
+
+// A network whose output is its image takes colours for classes: its names are those of red, green
+// and blue.
+TEST_F(OnnxNetworks, RunInHalfPrecision) {
+  OnnxFile colours{{1, 3, 480, 640}, {{"map", {1, 3, 480, 640}, {}}}};
+  colours.metadata = {{"names", "['background', 'person', 'chair']"}};
+  cv::Mat3b image(kImage, cv::Vec3b(255, 0, 0));
+  image(cv::Rect(100, 50, 60, 80)).setTo(cv::Scalar(0, 255, 0));
+  std::vector<FrameDetections> found;
+  for (const bool half : {false, true}) {
+    colours.half_precision = half;
+    write("colours.onnx", colours.bytes());
+    found.push_back(make_segmenter("onnx:" + path("colours.onnx").string(), kImage)
+                        ->segment(ColorImage(image), {1, "1"}));
+    ASSERT_EQ(found.back().objects.size(), 1U);
+    EXPECT_EQ(found.back().objects[0].class_name, "person");
+    EXPECT_EQ(found.back().objects[0].box, (PixelBox{100, 50, 160, 130}));
+  }
+  EXPECT_EQ(cv::countNonZero(found[0].mask.mat != found[1].mask.mat), 0);
+}
+
+TEST_F(OnnxNetworks, ReadTheTaskOfUltralyticsExports) {
+  OnnxFile pose{{1, 3, 64, 64}, {{"output0", {1, 84, 100}, std::vector<float>(8400)}}};
+  pose.metadata = {{"task", "pose"}};
+  write("pose.onnx", pose.bytes());
+  EXPECT_THAT(refusal("onnx:" + path("pose.onnx").string()),
+              HasSubstr("pose.onnx: a network for the task 'pose'"));
+}
+
+TEST_F(OnnxNetworks, RefuseClassifiersAndLogits) {
+  const auto refusal_of = [&](const TensorShape& shape, float value) {
+    const auto count = static_cast<std::size_t>(element_count(shape));
+    const OnnxFile file{{1, 3, 64, 64}, {{"y", shape, std::vector<float>(count, value)}}};
+    write("wrong.onnx", file.bytes());
+    return refusal("onnx:" + path("wrong.onnx").string());
+  };
+  EXPECT_THAT(refusal_of({1, 1000}, 0.5F),
+              HasSubstr("wrong.onnx: a network with the output "
+                        "1x1000, as image classifiers have"));
+  EXPECT_THAT(refusal_of({1, 84, 100}, 4),
+              HasSubstr("wrong.onnx: the network's output for an empty image: a score of 4"));
 }
 
 class FetchedNetworks : public OnnxNetworks {
