@@ -24,6 +24,7 @@
 #include "tooling/eval/ate.hpp"
 #include "tooling/eval/rpe.hpp"
 #include "tooling/pipeline/map_evaluation.hpp"
+#include "tooling/pipeline/object_folder.hpp"
 #include "tooling/pipeline/run_folder.hpp"
 #include "tooling/pipeline/run_sequence.hpp"
 #include "tooling/report/time_summary.hpp"
@@ -52,6 +53,7 @@ struct RunArguments {
   bool localize_only = false;
   std::string groundtruth;
   std::string poses = "estimated";
+  std::string objects_out;
 };
 
 SystemConfig make_config(const RunArguments& arguments) {
@@ -281,8 +283,13 @@ int run(const RunArguments& arguments) {
   if (options.live) options.live->clock = &clock;
   if (truth || arguments.poses == "truth") options.groundtruth = groundtruth;
   RunProgress progress(frames.size(), chosen.line);
-  SequenceRun run =
-      run_sequence(frames, config, std::move(options), std::vector<Observer*>{&progress});
+  std::vector<Observer*> observers = {&progress};
+  std::optional<ObjectFolder> objects;
+  if (!arguments.objects_out.empty()) {
+    observers.push_back(&objects.emplace(
+        arguments.objects_out, cv::Size(frames.camera().width_px, frames.camera().height_px)));
+  }
+  SequenceRun run = run_sequence(frames, config, std::move(options), observers);
 
   RunReport& report = run.report;
   if (!chosen.warning.empty()) report.warnings.push_back(chosen.warning);
@@ -327,6 +334,11 @@ void add_settings(CLI::App& command, RunArguments& arguments) {
       "what finds people and things: none, detections:DIR, masks:DIR (plain masks of "
       "people), onnx:MODEL.onnx, or auto (the networks of `make models`); auto where these are "
       "there, else none");
+  command.add_option(
+      "--write-objects",
+      arguments.objects_out,
+      "folder for the objects of every frame as they were used, with masks: a folder "
+      "of detections");
   command.add_option("--dynamics",
                      arguments.dynamics,
                      fmt::format("what is done about what moves: {}; as dynamics.mode",

@@ -44,6 +44,7 @@ struct FrameResult {
 
   std::vector<FeatureMark> features;  ///< off the masks
   std::vector<ObjectState> objects;   ///< those that were given or filled in
+  ObjectMask object_mask;             ///< pixels of all of them: i + 1 is objects[i]
   ObjectMask network_mask;            ///< pixels of dynamic objects, as the network has them
   ObjectMask extended_mask;           ///< the same after the extension by depth
   Mask depth_jumps;                   ///< pixels whose depth has changed suddenly

@@ -174,6 +174,7 @@ ObjectState DynamicObjects::state_by_class(const TrackedObject& object,
   if (state.dynamic) state.reason = StateReason::kDynamicClass;
   if (state.category == Category::kPotentiallyDynamic) state.reason = StateReason::kNotAsked;
   state.box = object.detection.box;
+  state.score = object.detection.score;
   state.filled = object.filled.has_value();
   state.depths = depths.interval;
   state.median_depth_m = depths.median_m;
@@ -190,7 +191,10 @@ ObjectMask DynamicObjects::extended_mask(const DepthImage& depth,
     if (!states[i].dynamic) continue;
     const TrackedObject& object = objects.objects[i];
     const int id = object.detection.id;
-    const MaskArea& area = measured.areas[static_cast<std::size_t>(id)];
+    // Fan 2020 knows no masks from depth: Eq. (5) takes the box of an object without a mask.
+    const bool box_alone =
+        mode_.extension == ExtensionRule::kBox && object.mask_source == MaskSource::kDepth;
+    const MaskArea area = box_alone ? MaskArea{} : measured.areas[static_cast<std::size_t>(id)];
     const ObjectView view{depth, objects.mask, id, object.detection.box};
     // A box in place of a mask holds all that is known already.
     PixelPatch patch =

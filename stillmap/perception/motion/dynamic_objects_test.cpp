@@ -78,6 +78,28 @@ std::vector<StateReason> reasons(const DynamicsResult& result) {
   return found;
 }
 
+// A network that gives boxes alone: without masks by depth every meeting of boxes is a doubt.
+TEST(DynamicObjects, BoxesAloneAreJudgedByTheirDepth) {
+  for (const bool by_depth : {true, false}) {
+    const Office office;
+    FrameDetections boxes;
+    boxes.stamp.seconds = 1;
+    for (const TrackedObject& object : office.objects.objects) {
+      boxes.objects.push_back(object.detection);
+    }
+    ObjectTrackerConfig tracking;
+    tracking.masks_from_depth = by_depth;
+    ObjectTracker tracker(tracking, FillRule::kCausal);
+    const FrameObjects found = tracker.push({FrameId(0), boxes, office.depth}).value();
+    EXPECT_EQ(found.objects[1].mask_source, by_depth ? MaskSource::kDepth : MaskSource::kDetected);
+    const std::vector<StateReason> judged =
+        reasons(DynamicObjects({}, builtin_camera("tum_fr3"), dynamics_mode("full"))
+                    .judge(office.depth, found, {}));
+    EXPECT_EQ(judged[1], by_depth ? StateReason::kTouching : StateReason::kDepthUnknown);
+    EXPECT_EQ(judged[2], by_depth ? StateReason::kDepthsApart : StateReason::kDepthUnknown);
+  }
+}
+
 TEST(DynamicObjects, JudgesEachObjectWithAReason) {
   const Office office;
   const DynamicsResult result = office.judge(dynamics_mode("paper"));

@@ -18,6 +18,7 @@ using TrackId = Id<struct TrackTag>;
 /// The source of an object's pixels.
 enum class MaskSource : std::uint8_t {
   kDetected,  ///< the network, in this frame; possibly without pixels
+  kDepth,     ///< the depth in its box, in this frame: the network gave the box alone
   kCarried,   ///< the mask of the nearest frame with the object, refined by depth
   kBox,       ///< the whole box of the object
 };

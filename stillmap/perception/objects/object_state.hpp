@@ -78,6 +78,7 @@ struct ObjectState {
   StateReason reason = StateReason::kStaticClass;  ///< why it is dynamic or not
   std::optional<TrackId> person;  ///< the person who interacts with it, or is before or behind it
   PixelBox box;                   ///< in this frame
+  float score = 0;                ///< of the network, when it was detected last
   bool filled = false;            ///< the network missed it in this frame
   std::optional<DepthInterval> depths;  ///< of its mask, outliers removed; metres
   float median_depth_m = 0;             ///< of its mask; 0 without depth

@@ -8,6 +8,7 @@
 
 #include "stillmap/core/error.hpp"
 #include "stillmap/perception/detections/box_overlap.hpp"
+#include "stillmap/perception/objects/box_mask.hpp"
 #include "stillmap/perception/objects/boxes.hpp"
 
 namespace stillmap {
@@ -17,14 +18,15 @@ constexpr std::size_t kMostObjects = 255;  // the number of ids of a mask
 
 /// The objects of a frame with their tracks, numbered by their position, and a copy of the mask.
 FrameObjects detected_objects(const ObjectTracker::Observation& frame,
-                              const std::vector<TrackId>& tracks) {
+                              const std::vector<TrackId>& tracks,
+                              const std::vector<MaskSource>& sources) {
   FrameObjects result{frame.id, frame.detections.stamp, {}, {}};
   std::array<std::uint8_t, 256> place{};
   for (const DetectedObject& object : frame.detections.objects) {
     STILLMAP_CHECK(object.id > 0 && object.id <= 255);
     const std::size_t number = result.objects.size() + 1;
     place[static_cast<std::size_t>(object.id)] = static_cast<std::uint8_t>(number);
-    TrackedObject tracked{object, tracks[number - 1], std::nullopt, MaskSource::kDetected};
+    TrackedObject tracked{object, tracks[number - 1], std::nullopt, sources[number - 1]};
     tracked.detection.id = static_cast<int>(number);
     result.objects.push_back(std::move(tracked));
   }
@@ -123,6 +125,29 @@ std::vector<TrackId> ObjectTracker::associate(const Observation& frame) {
   return found;
 }
 
+// The object's depth in its track's last frame tells its layer from others in the box.
+std::vector<MaskSource> ObjectTracker::complete(Observation& frame,
+                                                const std::vector<TrackId>& tracks) {
+  std::vector<MaskSource> sources(tracks.size(), MaskSource::kDetected);
+  if (!config_.masks_from_depth || frame.depth.mat.empty()) return sources;
+  std::vector<std::optional<float>> expected;
+  for (const TrackId id : tracks) {
+    expected.push_back(std::ranges::find(tracks_, id, &Track::id)->depth_m);
+  }
+  const std::vector<bool> completed = complete_masks(frame.detections, frame.depth, expected);
+  const MaskAreas areas = mask_areas(frame.detections.mask);
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    if (!completed[i]) continue;
+    sources[i] = MaskSource::kDepth;
+    const int id = frame.detections.objects[i].id;
+    const ObjectDepths depths = object_depths(
+        frame.depth, frame.detections.mask, id, areas[static_cast<std::size_t>(id)], OutlierRule{});
+    if (depths.measured > 0)
+      std::ranges::find(tracks_, tracks[i], &Track::id)->depth_m = depths.median_m;
+  }
+  return sources;
+}
+
 std::optional<FrameObjects> ObjectTracker::push(Observation frame) {
   STILLMAP_CHECK(held_.empty() ||
                  held_.back().frame.detections.stamp.seconds < frame.detections.stamp.seconds);
@@ -133,8 +158,10 @@ std::optional<FrameObjects> ObjectTracker::push(Observation frame) {
   const std::size_t longest_gap = std::max<std::size_t>(2 * search, 1);
   std::erase_if(tracks_, [&](const Track& t) { return pushed_ - t.seen_at > longest_gap; });
   std::vector<TrackId> tracks = associate(frame);
+  std::vector<MaskSource> sources = complete(frame, tracks);
   auto areas = std::make_shared<const MaskAreas>(mask_areas(frame.detections.mask));
-  held_.push_back({std::move(frame), pushed_, std::move(tracks), std::move(areas)});
+  held_.push_back(
+      {std::move(frame), pushed_, std::move(tracks), std::move(sources), std::move(areas)});
   ++pushed_;
   const std::size_t delay = rule_ == FillRule::kBothWays ? search : 0;
   if (pushed_ <= delay) return std::nullopt;
@@ -152,7 +179,7 @@ FrameObjects ObjectTracker::carry_to(FrameId frame,
   STILLMAP_CHECK(rule_ == FillRule::kCausal);
   if (held_.empty()) return {frame, stamp, {}, {}};
   STILLMAP_CHECK(held_.back().frame.detections.stamp.seconds < stamp.seconds);
-  return leave({{frame, {stamp, {}, {}}, depth}, pushed_, {}, nullptr, false});
+  return leave({{frame, {stamp, {}, {}}, depth}, pushed_, {}, {}, nullptr, false});
 }
 
 std::vector<FrameObjects> ObjectTracker::flush() {
@@ -203,9 +230,13 @@ std::optional<ObjectTracker::Fill> ObjectTracker::fill_of(const Track& track,
   return fill;
 }
 
+// The object is there under the name of the track, or under another name of which the network is
+// much surer.
 bool ObjectTracker::is_duplicate(const Track& track, const Fill& fill, const Held& held) const {
+  constexpr float kSurer = 1.5F;
+  const float score = fill.nearest.held->frame.detections.objects[fill.nearest.object].score;
   return std::ranges::any_of(held.frame.detections.objects, [&](const DetectedObject& object) {
-    return object.class_name == track.class_name &&
+    return (object.class_name == track.class_name || object.score > kSurer * score) &&
            box_iou(object.box, fill.box) > config_.duplicate_iou;
   });
 }
@@ -228,7 +259,7 @@ bool ObjectTracker::is_real(const Track& track, const Held& held) const {
 }
 
 FrameObjects ObjectTracker::leave(const Held& held) const {
-  FrameObjects result = detected_objects(held.frame, held.tracks);
+  FrameObjects result = detected_objects(held.frame, held.tracks, held.sources);
   for (const Track& track : tracks_) {
     if (!is_real(track, held) || result.objects.size() == kMostObjects) continue;
     if (std::ranges::find(held.tracks, track.id) != held.tracks.end()) continue;

@@ -22,6 +22,7 @@ struct ObjectTrackerConfig {
   double duplicate_iou = 0.5;
   int min_sightings = 2;
   double carry_depth_margin_m = 0.15;
+  bool masks_from_depth = true;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -52,6 +53,10 @@ struct ObjectTrackerConfig {
     visit("carry_depth_margin_m",
           self.carry_depth_margin_m,
           FieldInfo{"change of depth that a propagated mask allows its object", "m", 0, 10});
+    visit("masks_from_depth",
+          self.masks_from_depth,
+          FieldInfo{
+              "whether an object of which the network gives the box alone gets a mask by depth"});
   }
 };
 
@@ -63,6 +68,8 @@ enum class FillRule : std::uint8_t {
 
 /// Tracks objects over frames and fills in objects that the network missed (Fan 2020, section
 /// III-C).
+///
+/// Objects of which the network gives the box alone get a mask by depth (mask_from_depth()).
 ///
 /// A detection continues a track of its class when its box overlaps with the predicted box of the
 /// track; the best overlaps are taken first. The same input gives the same bits. With kBothWays a
@@ -98,6 +105,7 @@ class ObjectTracker {
     PixelBox box;                   // of its last detection
     PixelBox velocity{0, 0, 0, 0};  // of each side, pixels per second
     double seen_s = 0;              // stamp of its last detection
+    std::optional<float> depth_m;   // median of its mask then
     std::size_t seen_at = 0;        // position of that frame in the stream
     int sightings = 0;
   };
@@ -105,6 +113,7 @@ class ObjectTracker {
     Observation frame;
     std::size_t position = 0;     // in the stream
     std::vector<TrackId> tracks;  // of frame.detections.objects
+    std::vector<MaskSource> sources;
     std::shared_ptr<const MaskAreas> areas;
     bool looked_at = true;  // by a network
   };
@@ -121,6 +130,8 @@ class ObjectTracker {
 
   [[nodiscard]] static PixelBox predicted_box(const Track& track, double stamp_s);
   [[nodiscard]] std::vector<TrackId> associate(const Observation& frame);
+  [[nodiscard]] std::vector<MaskSource> complete(Observation& frame,
+                                                 const std::vector<TrackId>& tracks);
   void see(Track& track, const DetectedObject& object, double stamp_s) const;
   [[nodiscard]] FrameObjects leave(const Held& held) const;
   [[nodiscard]] bool is_real(const Track& track, const Held& held) const;

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/perception/objects/box_mask.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include <gtest/gtest.h>
+#include <opencv2/core.hpp>
+
+namespace stillmap {
+namespace {
+
+const cv::Rect kThing(250, 150, 120, 150);
+const PixelBox kBox{248, 149, 372, 302};
+
+/// A room with a wall at 4 m and a floor that comes nearer below, and in it a thing at 2 m that
+/// stands on the floor: where it ends, floor and thing have one depth.
+DepthImage room_with_thing() {
+  DepthImage depth(cv::Mat1f(480, 640, 4.0F));
+  for (int row = 200; row < 480; ++row) {
+    depth.mat.row(row).setTo(std::min(4.0F, 200.0F / static_cast<float>(row - 200)));
+  }
+  cv::Mat1f(depth.mat, kThing).setTo(2.0F);
+  return depth;
+}
+
+double overlap(const PixelPatch& patch, const cv::Rect& truth) {
+  cv::Mat1b found(480, 640, std::uint8_t{0}), expected(480, 640, std::uint8_t{0});
+  if (!patch.area.empty()) cv::Mat1b(patch.pixels != 0).copyTo(found(patch.area));
+  expected(truth).setTo(255);
+  return static_cast<double>(cv::countNonZero(found & expected)) / cv::countNonZero(found | expected);
+}
+
+TEST(MaskFromDepth, IsTheThingWithoutWallAndFloor) {
+  EXPECT_GT(overlap(mask_from_depth(room_with_thing(), {}, kBox), kThing), 0.9);
+}
+
+TEST(MaskFromDepth, OfALooseBoxIsTheThingToo) {
+  const PixelBox loose{230, 130, 400, 330};
+  EXPECT_GT(overlap(mask_from_depth(room_with_thing(), {}, loose), kThing), 0.85);
+}
+
+// The back of a chair, and its seat, which begins nearer and lies below an arm.
+TEST(MaskFromDepth, HasPartsThatOnlyTheBoxTiesTogether) {
+  DepthImage depth = room_with_thing();
+  cv::Mat1f(depth.mat, cv::Rect(250, 240, 120, 60)).setTo(1.7F);
+  cv::Mat1f(depth.mat, cv::Rect(250, 232, 120, 8)).setTo(1.5F);
+  EXPECT_GT(overlap(mask_from_depth(depth, {}, kBox), kThing), 0.85);
+}
+
+TEST(MaskFromDepth, LeavesOutWhatIsBehindAndBefore) {
+  DepthImage depth = room_with_thing();
+  const cv::Rect pole(300, 0, 16, 480);  // somebody's leg passes before it
+  cv::Mat1f(depth.mat, pole).setTo(0.8F);
+  const PixelPatch patch = mask_from_depth(depth, {}, kBox);
+  const cv::Mat1b on_pole = patch.pixels(cv::Rect(pole.x - patch.area.x + 4, 0, 8, patch.area.height));
+  EXPECT_EQ(cv::countNonZero(on_pole), 0);
+  EXPECT_GT(overlap(patch, kThing), 0.75);  // the leg hides an eighth of it
+}
+
+TEST(MaskFromDepth, FollowsTheLayerThatTheObjectHadBefore) {
+  DepthImage depth = room_with_thing();
+  cv::Mat1f(depth.mat, cv::Rect(250, 150, 60, 150)).setTo(1.2F);  // as large, and nearer
+  const cv::Rect nearer(250, 150, 60, 150), farther(310, 150, 60, 150);
+  EXPECT_GT(overlap(mask_from_depth(depth, {}, kBox), nearer), 0.8);
+  EXPECT_GT(overlap(mask_from_depth(depth, {}, kBox, 2.0F), farther), 0.8);
+}
+
+TEST(MaskFromDepth, TakesNoPixelFromOthers) {
+  ObjectMask mask(cv::Mat1b(480, 640, std::uint8_t{0}));
+  mask.mat(cv::Rect(250, 150, 30, 150)).setTo(7);
+  const PixelPatch patch = mask_from_depth(room_with_thing(), mask, kBox);
+  EXPECT_GT(overlap(patch, {280, 150, 90, 150}), 0.85);
+  EXPECT_LT(overlap(patch, {250, 150, 30, 150}), 0.01);
+}
+
+TEST(MaskFromDepth, IsEmptyWithoutDepthOrForABoxTooSmall) {
+  const DepthImage dark(cv::Mat1f(480, 640, 0.0F));
+  EXPECT_EQ(overlap(mask_from_depth(dark, {}, kBox), kThing), 0);
+  EXPECT_TRUE(mask_from_depth(room_with_thing(), {}, {300, 200, 310, 210}).area.empty());
+  EXPECT_TRUE(mask_from_depth(room_with_thing(), {}, {-500, -500, -10, -10}).area.empty());
+  EXPECT_TRUE(mask_from_depth(room_with_thing(), {}, {0, 0, 1e9, 1e-9}).area.empty());
+  const DepthImage broken(cv::Mat1f(480, 640, std::numeric_limits<float>::quiet_NaN()));
+  EXPECT_EQ(overlap(mask_from_depth(broken, {}, kBox), kThing), 0);
+}
+
+TEST(CompleteMasks, GivesPixelsToBoxesAloneTheSurestFirst) {
+  FrameDetections found;
+  const PixelBox other{20, 20, 80, 80};
+  found.objects = {{1, "cup", 0.3F, kBox}, {2, "chair", 0.8F, kBox}, {3, "person", 0.9F, other}};
+  found.mask = ObjectMask(cv::Mat1b(480, 640, std::uint8_t{0}));
+  found.mask.mat(cv::Rect(20, 20, 60, 60)).setTo(3);
+  const cv::Mat1b given = found.mask.mat;
+  const std::vector<bool> completed =
+      complete_masks(found, room_with_thing(), {std::nullopt, std::nullopt, std::nullopt});
+  EXPECT_TRUE(completed[1]);
+  EXPECT_FALSE(completed[2]);
+  EXPECT_GT(cv::countNonZero(found.mask.mat == 2), 0.9 * kThing.area());
+  EXPECT_LT(cv::countNonZero(found.mask.mat == 1), 0.1 * kThing.area());
+  EXPECT_EQ(cv::countNonZero(found.mask.mat == 3), 60 * 60);
+  EXPECT_EQ(cv::countNonZero(given == 2), 0) << "the image that was given is another's";
+}
+
+}  // namespace
+}  // namespace stillmap
