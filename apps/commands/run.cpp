@@ -92,9 +92,10 @@ ChosenSegmenter default_segmenter(cv::Size image, const SegmenterOptions& option
   try {
     return {make_segmenter("auto", image, options), "auto, the networks of make models"};
   } catch (const Error& error) {
-    return {nullptr,
-            "none, for there are no networks: people stay in the map as far as they stand still",
-            fmt::format("nothing looks for people and things: {}", error.what())};
+    return {
+        nullptr,
+        "none: no networks here (make models gets them); people who stand still get into the map",
+        fmt::format("nothing looks for people and things: {}", error.what())};
   }
 }
 
