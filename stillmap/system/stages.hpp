@@ -42,8 +42,8 @@ struct System::Stages {
   void apply_finished_work();
   /// The predicted pose in the odometry frame; nothing while lost and before the first frame.
   [[nodiscard]] std::optional<Eigen::Isometry3d> expected_pose(const RgbdFrame& frame) const;
-  /// The frame's pose by its features and, where these are too few, by features on dynamic objects
-  /// that are not known to move.
+  /// The frame's pose by its features and, where these are too few, by doubted ones on dynamic
+  /// objects.
   [[nodiscard]] TrackedFrame track(const PreparedFrame& prepared,
                                    Features features,
                                    const FrameDynamics& judged,

@@ -69,12 +69,12 @@ struct FrameDynamics {
   /// Pixels that no feature may have: `excluded` without objects that have stood still since first
   /// seen.
   Mask excluded_from_pose;
-  /// Per object, how likely it is static, in [0, 1]; 0 for what is known to move. Empty: the mode
-  /// doubts nothing.
+  /// Per object, how likely it is static, in [0, 1]; small for an object seen to move. Empty: the
+  /// mode doubts nothing.
   std::vector<float> trust = {};
 };
 
-/// The doubted pixels: excluded pixels on dynamic objects that are not known to move.
+/// The excluded pixels on dynamic objects: whether they are static is only doubted.
 struct DoubtedPixels {
   Mask others;      ///< all pixels but these
   cv::Mat1f trust;  ///< of each of these
