@@ -26,7 +26,7 @@ enum class MaskOrigin : std::uint8_t {
 
 /// A feature of a frame and what became of it.
 struct FeatureMark {
-  Eigen::Vector2f raw_px;  ///< position in the image, distortion included
+  Eigen::Vector2f raw_px;                            ///< position in the image, distortion included
   FeatureVerdict verdict = FeatureVerdict::kStable;  ///< of the filter
   bool tracked = false;                              ///< an inlier of the pose
 };

@@ -70,8 +70,8 @@ struct RunReport {
   std::size_t frames_elsewhere = 0;  ///< tracked in a submap not joined to the main one
   std::vector<ClosedLoop> loops;     ///< closed in this run, in order
 
-  Trajectory estimate;                    ///< final poses of all tracked frames, in the run's world frame
-  Trajectory keyframes;                   ///< the same of the key frames
+  Trajectory estimate;   ///< final poses of all tracked frames, in the run's world frame
+  Trajectory keyframes;  ///< the same of the key frames
   std::optional<Trajectory> groundtruth;  ///< in its own world frame
   std::optional<AteResult> ate;
   std::optional<RpeResult> rpe;

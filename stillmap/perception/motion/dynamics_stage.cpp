@@ -38,8 +38,9 @@ std::array<bool, 256> objects_among(const std::vector<ObjectState>& states,
   return among;
 }
 
-constexpr float kMostDoubt = 0.9F;      // at a score of 1
-constexpr float kTrustOfMovers = 0.1F;  // not 0: wrong poses and masks make still objects seem to move
+constexpr float kMostDoubt = 0.9F;  // at a score of 1
+constexpr float kTrustOfMovers =
+    0.1F;  // not 0: wrong poses and masks make still objects seem to move
 
 class JudgingStage final : public DynamicsStage {
  public:

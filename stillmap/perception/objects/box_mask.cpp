@@ -18,10 +18,10 @@
 namespace stillmap {
 namespace {
 
-constexpr int kLeastSide_px = 16;    // of a box
-constexpr int kMostCells = 96;       // along the longer side of a box
-constexpr double kMargin = 0.08;     // around a box, as a share of its side
-constexpr float kNearest_m = 0.2F;   // depth at which the first layer begins
+constexpr int kLeastSide_px = 16;     // of a box
+constexpr int kMostCells = 96;        // along the longer side of a box
+constexpr double kMargin = 0.08;      // around a box, as a share of its side
+constexpr float kNearest_m = 0.2F;    // depth at which the first layer begins
 constexpr double kLayerWidth = 0.04;  // of a class of depths, as a share of the depth
 constexpr std::size_t kLayers = 110;  // up to 15 m
 constexpr double kWorthwhile = 0.5;   // least size of a nearer layer, as a share of the strongest
@@ -111,7 +111,8 @@ class CellGrid {
   [[nodiscard]] int size() const { return columns_ * rows_; }
   [[nodiscard]] int stride() const { return stride_; }
   [[nodiscard]] cv::Rect cell(int i) const {
-    return cv::Rect(area_.x + i % columns_ * stride_, area_.y + i / columns_ * stride_, stride_, stride_);
+    return cv::Rect(
+        area_.x + i % columns_ * stride_, area_.y + i / columns_ * stride_, stride_, stride_);
   }
   [[nodiscard]] float depth(int i) const { return at(depth_, i); }
 
@@ -253,9 +254,9 @@ std::vector<bool> complete_masks(FrameDetections& detections,
         mask_from_depth(depth, detections.mask, object.box, expected_depths_m[i]);
     if (patch.area.empty() || cv::countNonZero(patch.pixels) == 0) continue;
     if (!own) {
-      detections.mask = ObjectMask(detections.mask.mat.empty()
-                                       ? cv::Mat1b(depth.mat.size(), std::uint8_t{0})
-                                       : cv::Mat1b(detections.mask.mat.clone()));
+      detections.mask =
+          ObjectMask(detections.mask.mat.empty() ? cv::Mat1b(depth.mat.size(), std::uint8_t{0})
+                                                 : cv::Mat1b(detections.mask.mat.clone()));
       own = true;
     }
     give(detections.mask, patch, object.id);

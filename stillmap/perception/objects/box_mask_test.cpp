@@ -28,7 +28,8 @@ double overlap(const PixelPatch& patch, const cv::Rect& truth) {
   cv::Mat1b found(480, 640, std::uint8_t{0}), expected(480, 640, std::uint8_t{0});
   if (!patch.area.empty()) cv::Mat1b(patch.pixels != 0).copyTo(found(patch.area));
   expected(truth).setTo(255);
-  return static_cast<double>(cv::countNonZero(found & expected)) / cv::countNonZero(found | expected);
+  return static_cast<double>(cv::countNonZero(found & expected)) /
+         cv::countNonZero(found | expected);
 }
 
 TEST(MaskFromDepth, IsTheThingWithoutWallAndFloor) {
@@ -53,7 +54,8 @@ TEST(MaskFromDepth, LeavesOutWhatIsBehindAndBefore) {
   const cv::Rect pole(300, 0, 16, 480);  // a person's leg passes before it
   cv::Mat1f(depth.mat, pole).setTo(0.8F);
   const PixelPatch patch = mask_from_depth(depth, {}, kBox);
-  const cv::Mat1b on_pole = patch.pixels(cv::Rect(pole.x - patch.area.x + 4, 0, 8, patch.area.height));
+  const cv::Mat1b on_pole =
+      patch.pixels(cv::Rect(pole.x - patch.area.x + 4, 0, 8, patch.area.height));
   EXPECT_EQ(cv::countNonZero(on_pole), 0);
   EXPECT_GT(overlap(patch, kThing), 0.75);  // the leg hides an eighth of it
 }
