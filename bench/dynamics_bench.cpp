@@ -10,8 +10,7 @@
 namespace stillmap {
 namespace {
 
-constexpr std::uint32_t kPast =
-    100;  // frames: the stage compares with depth of up to 80 frames ago
+constexpr std::uint32_t kPast = 100;  // frames: the stage looks back up to 80
 
 /// The stage after `kPast` frames at true poses, with its input for the next two frames.
 class Office {

@@ -48,8 +48,7 @@ class SimulatedWorld {
   struct Config {
     Eigen::Vector3d half_size_m{2.5, 1.5, 3.0};  ///< of the box, whose middle is the origin
     int points = 5000;
-    int kinds = 0;  ///< number of different descriptors, shared by points of one kind; 0 = one for
-                    ///< each point
+    int kinds = 0;  ///< number of different descriptors among the points; 0 = one per point
     std::uint32_t seed = 1;
   };
 

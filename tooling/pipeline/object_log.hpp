@@ -29,8 +29,7 @@ using LoggedFrame = std::pair<StampedPose, std::vector<ObjectState>>;
 /// `by` is the track of the person who moves it, `person` that of the person who touches it or is
 /// before or behind it; `box` as in detections; `filled`: the network has missed it. `p_world` and
 /// `v_world`, in metres and metres a second, are under the poses of `final_poses`, which has the
-/// stamps of some of the frames, in order. Unknown values are null, as both are in a frame without
-/// a pose.
+/// stamps of some of the frames, in order. Unknown values are null; without a final pose both are.
 [[nodiscard]] std::string objects_jsonl(std::span<const LoggedFrame> frames,
                                         const Trajectory& final_poses);
 

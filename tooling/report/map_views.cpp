@@ -79,8 +79,7 @@ View rough_view(MapSide side, const SceneFrame& scene, const ViewSize& size) {
       break;
   }
   View view = view_from_above(scene, size.width_px, size.height_px);
-  view.point_size_m *=
-      1.5;  // in this view, points of one surface lie in rows with gaps between them
+  view.point_size_m *= 1.5;  // in this view, points of one surface lie in rows with gaps
   return view;
 }
 

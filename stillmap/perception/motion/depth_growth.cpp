@@ -231,8 +231,7 @@ class GrowthGrid {
     float depth = 0;
     std::uint32_t part = 0;  // number of the part with this cell, from 1
     bool mask = false, visited = false;
-    bool rim =
-        true;  // border of the image, or a cell that may not join: neither joins nor is a hole
+    bool rim = true;  // border of the image, or a cell that may not join; never a hole
   };
   struct Part {
     std::size_t seeds = 0;          // cells of the mask

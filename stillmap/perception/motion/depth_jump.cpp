@@ -145,8 +145,7 @@ HalfDepth DepthWarper::warp(const DepthImage& previous,
   STILLMAP_CHECK(previous.mat.rows == camera_.height_px && previous.mat.cols == camera_.width_px);
   const Eigen::Matrix<float, 3, 4> T = T_current_previous.matrix().topRows<3>().cast<float>();
   const auto width = static_cast<std::size_t>(ray_x_.cols);
-  std::vector<float> nearest(ray_x_.total() + 1,
-                             kNothingNear);  // one more for points without a cell
+  std::vector<float> nearest(ray_x_.total() + 1, kNothingNear);  // one more: no cell
   std::vector<float> z(width);
   std::vector<std::int32_t> cells(width);
   for (int row = 0; row < ray_x_.rows; ++row) {

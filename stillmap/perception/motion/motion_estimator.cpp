@@ -67,15 +67,13 @@ RobustVelocity robust_velocity(std::span<const double> stamps_s,
   const std::size_t n = positions.size();
   STILLMAP_CHECK(n >= 2 && stamps_s.size() == n);
   RobustVelocity result;
-  double spread = 0,
-         scatter = 0;  // sums of squares: of the stamps, and of the positions about the line
+  double spread = 0, scatter = 0;  // sums of squares: stamps, and positions about the line
   const double middle_s = (stamps_s.front() + stamps_s.back()) / 2;
   for (const double stamp : stamps_s) spread += (stamp - middle_s) * (stamp - middle_s);
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<double> slopes;
     for (std::size_t i = 0; i < n; ++i) {
-      for (std::size_t j = i + (n + 1) / 2; j < n;
-           ++j) {  // differences of neighbours are mostly noise
+      for (std::size_t j = i + (n + 1) / 2; j < n; ++j) {  // near ones differ mostly by noise
         slopes.push_back((positions[j][axis] - positions[i][axis]) / (stamps_s[j] - stamps_s[i]));
       }
     }
