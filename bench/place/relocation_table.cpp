@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// How soon and how well a camera is relocalised after it was covered for 1 s: relocation_table
-// TRIALS NAME[@CAMERA]=SEQUENCE... [stranger.NAME[@CAMERA]=SEQUENCE...] The first half of each
-// sequence is mapped; then the camera is covered and continues elsewhere in the sequence: at frames
-// of the first half, and at frames of the second half near one of these. Where it continues in a
-// stranger, it must stay lost. Prints Markdown.
+// How soon and how well a camera is relocalised after it was covered for 1 s:
+// relocation_table TRIALS NAME[@CAMERA]=SEQUENCE... [stranger.NAME[@CAMERA]=SEQUENCE...]
+// The first half of each sequence is mapped; then the camera is covered and continues elsewhere in
+// the sequence: at frames of the first half, and at frames of the second half near one of these.
+// Where it continues in a stranger, it must stay lost. Prints Markdown.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
