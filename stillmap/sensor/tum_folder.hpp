@@ -11,8 +11,8 @@ namespace stillmap {
 /// called. The id of a frame is its frame number in the whole sequence.
 class TumFolder : public FrameStream {
  public:
-  /// Throws Error for a selection that begins after the last frame. An end after the last frame is
-  /// allowed.
+  /// Throws Error for a selection that begins after the last frame. A later end means the last
+  /// frame.
   explicit TumFolder(TumSequence sequence, const FrameSelection& selection = {});
 
   [[nodiscard]] const CameraModel& camera() const override { return sequence_.camera(); }

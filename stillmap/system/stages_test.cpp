@@ -48,8 +48,7 @@ int curtain_begin(std::uint32_t k) {
 /// The disturbance that the frames show in front of the room.
 enum class Disturbance {
   kNone,
-  kCurtain,  ///< covers most of the room and goes up and down: tracking that takes it for the room
-             ///< follows it
+  kCurtain,  ///< covers most of the room and moves up and down, which can mislead tracking
   kFrayed,   ///< half of the room seems nearer than it is, each pixel differently
 };
 
