@@ -32,7 +32,7 @@ RgbdFrame wall(const CameraModel& camera) {
   return frame;
 }
 
-/// All that is done for a key frame's cloud, in mode `full`.
+/// All work for a key frame's cloud, in mode `full`.
 void make_local_cloud(benchmark::State& state) {
   const CameraModel camera = builtin_camera("tum_fr3");
   const RgbdFrame frame = wall(camera);
@@ -64,7 +64,7 @@ void clean_depth(benchmark::State& state) {
 }
 BENCHMARK(clean_depth)->Unit(benchmark::kMillisecond);
 
-/// Key frames 10 cm and about 3 degrees apart, all of which see such a wall.
+/// Key frames 10 cm and about 3 degrees apart that all see such a wall.
 void assemble_global_cloud(benchmark::State& state) {
   const CameraModel camera = builtin_camera("tum_fr3");
   PointCloud local =
@@ -98,7 +98,7 @@ void make_range_image(benchmark::State& state) {
 }
 BENCHMARK(make_range_image)->Unit(benchmark::kMillisecond);
 
-/// What 100 key frames, 5 degrees apart, tell of the points of their map.
+/// The free-space verdict of 100 key frames, 5 degrees apart, on the points of their map.
 void check_free_space(benchmark::State& state) {
   const CameraModel camera = builtin_camera("tum_fr3");
   const RgbdFrame frame = wall(camera);

@@ -8,7 +8,7 @@
 namespace stillmap {
 namespace {
 
-// A wall with a sensor's noise and holes, and something before it.
+// A wall with a sensor's noise and holes, and an object before it.
 DepthImage wall(unsigned seed, int thing_x) {
   std::mt19937 rng(seed);
   std::normal_distribution<float> noise(0.0F, 0.02F);

@@ -10,9 +10,9 @@
 namespace stillmap {
 namespace {
 
-constexpr std::uint32_t kPast = 100;  // frames: the stage compares with up to 80 ago
+constexpr std::uint32_t kPast = 100;  // frames: the stage looks back up to 80
 
-/// The stage after `kPast` frames at true poses, and what it gets of the next ones.
+/// The stage after `kPast` frames at true poses, with its input for the next two frames.
 class Office {
  public:
   Office()
@@ -70,7 +70,7 @@ void judge_frame(benchmark::State& state) {
   state.counters["excluded_px"] = dynamic_pixels;
 }
 
-/// Two frames by turns, so that each is compared with the other one's features.
+/// Alternates two frames, so that each is compared with the features of the other.
 void sift_features(benchmark::State& state) {
   Office scene;
   std::vector<FrameDynamics> dynamics;
@@ -89,7 +89,7 @@ void sift_features(benchmark::State& state) {
   state.counters["of"] = static_cast<double>(features[(turn + 1) % 2].size());
 }
 
-/// How objects move, and what later frames are compared with.
+/// The motion of objects, and remembering the frame for later comparison.
 void remember_frame(benchmark::State& state) {
   Office scene;
   FrameDynamics dynamics = scene.judge(kPast, scene.objects(0));

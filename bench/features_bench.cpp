@@ -28,7 +28,7 @@ void extract(benchmark::State& state) {
   state.counters["features"] = static_cast<double>(found);
 }
 
-// The part of it that needs nothing but the image.
+// The part of extraction that needs only the image.
 void corners(benchmark::State& state) {
   const Scene scene;
   for (auto iteration : state) {
@@ -62,7 +62,7 @@ void orientation_and_descriptor(benchmark::State& state) {
   state.counters["features"] = static_cast<double>(places.size());
 }
 
-// The frame's own features, some pixels off and some bits changed, as a map's points would be.
+// The frame's features, some pixels off and with some bits changed, like projected landmarks.
 void match_1500_projections(benchmark::State& state) {
   Scene scene;
   const Features features = scene.extractor.extract(scene.image, scene.depth);

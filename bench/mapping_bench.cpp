@@ -13,7 +13,7 @@
 namespace stillmap {
 namespace {
 
-constexpr int kRound = 200;  // frames until the camera is where it was
+constexpr int kRound = 200;  // frames until the camera is back at its start
 constexpr ObservationNoise kNoise{.pixel_sigma_px = 0.7,
                                   .inverse_depth_sigma = 0.01,
                                   .missing_depth_share = 0.2,
@@ -58,7 +58,7 @@ void track_frame(benchmark::State& state) {
   Tracker tracker({}, {}, world().camera(), model(), 0);
   (void)tracker.start(frame_at(0), simulated.map.keyframe(KeyframeId(0)).features);
   tracker.set_reference(KeyframeId(0), simulated.map);
-  const PlaceIndex places;  // nobody asks it where tracking goes on
+  const PlaceIndex places;  // not queried while tracking is not lost
   int k = 0;
   int inliers = 0;
   for (auto iteration : state) {
@@ -71,7 +71,7 @@ void track_frame(benchmark::State& state) {
   state.counters["inliers"] = inliers;
 }
 
-/// The last key frame is new: up to 20 others are round it, a centimetre off.
+/// The last key frame is new: up to 20 others are around it, displaced by 1 cm.
 SimulatedMap map_with_new_keyframe(int keyframes) {
   SimulatedMap simulated = make_map(keyframes);
   std::mt19937 rng(4);
@@ -96,7 +96,7 @@ void cut_window(benchmark::State& state) {
   state.counters["keyframes"] = static_cast<double>(in_window);
 }
 
-/// All that a new key frame means for the map round it, in a room where others were before.
+/// All mapping work for a new key frame, in a room already seen by others.
 void map_keyframe(benchmark::State& state) {
   const int keyframes = static_cast<int>(state.range(0));
   const SimulatedMap simulated = map_with_new_keyframe(keyframes);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pose optimisation and bundle adjustment; the latter next to Ceres on the same problem, with the
-// same loss and analytic derivatives, on one thread. `cost` shows that both get equally far.
+// same loss and analytic derivatives, on one thread. `cost` shows that both reach the same minimum.
 #include <array>
 
 #include <benchmark/benchmark.h>
@@ -12,7 +12,7 @@ namespace stillmap {
 namespace {
 
 constexpr int kIterations = 10;
-constexpr double kTolerance = 1e-5;  // where the adjuster stops, as relative decrease
+constexpr double kTolerance = 1e-5;  // relative decrease at which the adjuster stops
 
 void pose_of_400_observations(benchmark::State& state) {
   PoseScene scene = make_pose_scene(1, 400, Depths::kSome, 1.0);
@@ -42,7 +42,7 @@ void bundle_ours(benchmark::State& state) {
   state.counters["observations"] = static_cast<double>(problem.observations.size());
 }
 
-/// A pose as Ceres has it: quaternion (x, y, z, w), then translation; steps are perturb_left's.
+/// A pose for Ceres: quaternion (x, y, z, w), then translation; steps are perturb_left's.
 Eigen::Isometry3d pose_of(const double* x) {
   return make_pose(Eigen::Quaterniond(x[3], x[0], x[1], x[2]), {x[4], x[5], x[6]});
 }

@@ -7,8 +7,8 @@
 namespace stillmap {
 namespace {
 
-// 300 key frames of 1000 features along a way: each sees some of what the one before saw, with some
-// bits changed, and a fifth of the features lie on edges, which all look alike.
+// 300 key frames of 1000 features along a path: each sees some features of the previous one, with
+// some bits changed, and a fifth of the features lie on edges, which all look alike.
 struct Way {
   TestDice dice{1};
   Descriptor edge = dice.descriptor();

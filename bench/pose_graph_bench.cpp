@@ -10,7 +10,7 @@
 namespace stillmap {
 namespace {
 
-// Key frames on a circle, each tied to the five before it; 0.5 m of drift that one loop takes out.
+// Key frames on a circle, each connected to the five before it; one loop removes a drift of 0.5 m.
 void close_circle(benchmark::State& state) {
   const auto count = static_cast<std::uint32_t>(state.range(0));
   PoseGraph graph;

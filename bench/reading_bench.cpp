@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From files to a frame and what a network has found in it.
+// From files to a frame and its detections.
 #include <benchmark/benchmark.h>
 
 #include "bench/rendered_office.hpp"
@@ -9,7 +9,7 @@
 namespace stillmap {
 namespace {
 
-/// Where the frames' files are; asked for before the clock runs, since the first call renders them.
+/// The folder of the frames' files. The first call renders them, so it precedes the measured loop.
 std::vector<SequenceEntry> entries() {
   std::vector<SequenceEntry> entries;
   for (std::uint32_t k = 0; k < RenderedOffice::kFrames; ++k) {
@@ -57,9 +57,9 @@ void read_detections(benchmark::State& state) {
   state.counters["objects"] = static_cast<double>(objects) / static_cast<double>(k);
 }
 
-/// Identities, and what the network has missed, from three frames each way.
+/// Tracks, and missed objects filled in from up to three frames before and after.
 void fill_objects(benchmark::State& state) {
-  (void)office();  // rendered before the clock runs
+  (void)office();  // rendered before the measured loop
   ObjectTracker tracker({}, FillRule::kBothWays);
   std::uint32_t step = 0;
   std::size_t filled = 0;

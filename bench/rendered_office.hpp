@@ -17,7 +17,7 @@
 namespace stillmap {
 
 /// The first frames of `stillmap synth --scene walking_xyz --detections imperfect --assets none`,
-/// on disk while this lives.
+/// on disk during the lifetime of the object.
 class RenderedOffice {
  public:
   static constexpr std::uint32_t kFrames = 12;
@@ -43,12 +43,12 @@ class RenderedOffice {
   [[nodiscard]] const DetectionsFolder& detections() const { return detections_; }
   [[nodiscard]] const CameraModel& camera() const { return sequence_.camera(); }
 
-  /// Which frame comes at a step of going there and back for ever.
+  /// The frame at a step of an endless walk forwards and backwards.
   [[nodiscard]] static std::uint32_t at_step(std::uint32_t step) {
     const std::uint32_t at = step % (2 * (kFrames - 1));
     return at < kFrames ? at : 2 * (kFrames - 1) - at;
   }
-  /// That frame, with the number and the stamp of the step.
+  /// The same frame with the number and the stamp of the step.
   [[nodiscard]] FramePtr frame(std::uint32_t step) const {
     RgbdFrame frame = *frames_[at_step(step)];
     frame.id = FrameId(step);
@@ -92,7 +92,7 @@ class RenderedOffice {
   std::vector<Eigen::Isometry3d> poses_;
 };
 
-/// Written once a program, taken away at its end.
+/// Written once per program, removed at its end.
 [[nodiscard]] inline const RenderedOffice& office() {
   static const RenderedOffice kOffice;
   return kOffice;

@@ -69,7 +69,7 @@ Map make_map() {
   return map;
 }
 
-// As many points as the views of fr3 have, about.
+// About as many points as the views of fr3 have.
 std::shared_ptr<const StaticView> make_view() {
   StaticView view;
   view.cloud.origin = {-1, -1, 0.5F};
@@ -92,7 +92,7 @@ Session make_session() {
   return session;
 }
 
-// A file in a folder of its own, which goes with it.
+// A file in a temporary folder, removed with the object.
 struct SessionFile {
   SessionFile() : session(make_session()) {
     std::filesystem::create_directories(folder);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a frame keeps for the map, and the map made of it, with the settings of a run.
+// The view of a frame, and the map of all views, with the settings of a run.
 #include <benchmark/benchmark.h>
 
 #include "bench/rendered_office.hpp"
@@ -33,7 +33,7 @@ void keep_view(benchmark::State& state) {
                                  view.range.cells.size() * sizeof(RangeCell));
 }
 
-/// Views of one place, again and again: as many as a run keeps in 4 and in 20 seconds there.
+/// Repeated views of one place: as many as a run keeps there in 4 s and in 20 s.
 void assemble_static_map(benchmark::State& state) {
   const CloudConfig config = CloudConfig{}.resolved_for(dynamics_mode("full").cloud);
   const cv::Mat2f rays = pixel_rays(office().camera());

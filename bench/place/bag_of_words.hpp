@@ -37,7 +37,7 @@ class BagOfWords {
       const auto with = static_cast<double>(postings_[word].size());
       return with > 0 ? std::log((count + 1) / with) : 0.0;
     };
-    // Weights of a bag depend on the words' rarity now, so places are weighed at each query.
+    // A bag's weights depend on the current rarity of its words, so each query weighs the places.
     std::vector<double> norms(bags_.size(), 0.0), result(bags_.size(), 0.0);
     for (std::size_t place = 0; place < bags_.size(); ++place) {
       for (const auto& [word, frequency] : bags_[place]) norms[place] += frequency * idf(word);

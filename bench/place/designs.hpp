@@ -12,7 +12,7 @@
 
 namespace stillmap {
 
-/// A way to find places, to be compared with others: places are numbered as they were added.
+/// A method to find places. Places are numbered in the order in which they were added.
 class PlaceDesign {
  public:
   PlaceDesign() = default;
@@ -20,7 +20,7 @@ class PlaceDesign {
   PlaceDesign& operator=(const PlaceDesign&) = delete;
   virtual ~PlaceDesign() = default;
   virtual void add(std::span<const Descriptor> descriptors) = 0;
-  /// How much every place added so far looks like this one; more is more alike.
+  /// The similarity of every place added so far to this one; higher is more similar.
   [[nodiscard]] virtual std::vector<double> scores(
       std::span<const Descriptor> descriptors) const = 0;
 };
@@ -30,7 +30,7 @@ struct NamedDesign {
   std::function<std::unique_ptr<PlaceDesign>()> make;
 };
 
-/// (a) Bags of words that are bits of the descriptor: `tables` words of `bits` bits each.
+/// (a) Bags of words, with bits of the descriptor as words: `tables` words of `bits` bits each.
 [[nodiscard]] std::unique_ptr<PlaceDesign> hash_words(int tables, int bits);
 
 /// (b) Bags of words of a tree of `branching`^3 words, made of `training` descriptors.
@@ -40,7 +40,7 @@ struct VocabularyTree;
 [[nodiscard]] std::unique_ptr<PlaceDesign> vocabulary_words(
     std::shared_ptr<const VocabularyTree> tree);
 
-/// (c) Descriptors vote for their like: stillmap::PlaceIndex.
+/// (c) Descriptors vote for places with similar descriptors: stillmap::PlaceIndex.
 [[nodiscard]] std::unique_ptr<PlaceDesign> place_index(const PlaceOptions& options);
 
 }  // namespace stillmap

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How often LoopVerifier takes pairs of views for one place: loop_table ROOM=FOLDER... Pairs of the
-// same place by their angle, pairs of different places by their room; prints Markdown.
+// How often LoopVerifier accepts pairs of views as one place: loop_table ROOM=FOLDER... Pairs of
+// the same place by their angle, pairs of different places by their room; prints Markdown.
 #include <algorithm>
 #include <chrono>
 #include <map>
@@ -20,7 +20,7 @@ constexpr std::size_t kGap = 12;
 struct Row {
   int pairs = 0;
   int accepted = 0;
-  int most_inliers = 0;  // of any pair, whatever its share
+  int most_inliers = 0;  // of all pairs, accepted or not
   double largest_share = 0;
   std::vector<double> shares, errors_m;  // of those accepted
 };

@@ -38,7 +38,7 @@ Material read_material(const std::vector<std::string>& words) {
   return material;
 }
 
-// The best place of a query, of those that are certainly the same or certainly another.
+// The best place for a query, among those that are certainly the same or certainly different.
 struct Answer {
   double score = 0;
   bool right = false;
@@ -46,10 +46,10 @@ struct Answer {
 
 struct Results {
   std::vector<Answer> answers;  // of queries with a right answer
-  double milliseconds = 0;      // over all
+  double milliseconds = 0;      // summed over all queries
 };
 
-// `least_deg`: views nearer than that are left out, to see what a change of view costs.
+// `least_deg`: views closer in angle are left out, to measure the cost of a change of view.
 Results ask(const PlaceDesign& design,
             const std::vector<View>& known,
             const std::vector<View>& queries,

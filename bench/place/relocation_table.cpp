@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// How soon and how well a camera that was covered for a second is found again:
+// How soon and how well a camera is relocalised after it was covered for 1 s:
 // relocation_table TRIALS NAME[@CAMERA]=SEQUENCE... [stranger.NAME[@CAMERA]=SEQUENCE...]
-// The first half of each sequence is mapped; then the camera is covered and goes on elsewhere in
-// the sequence: at frames of the first half, and at frames of the second that are near one of
-// these. Where it goes on in a stranger, it must stay lost. Prints Markdown.
+// The first half of each sequence is mapped; then the camera is covered and continues elsewhere in
+// the sequence: at frames of the first half, and at frames of the second half near one of these.
+// Where it continues in a stranger, it must stay lost. Prints Markdown.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -82,7 +82,7 @@ Apart apart(const Place& place, std::size_t i, std::size_t j) {
   return {T.translation().norm(), rotation_angle(T.linear()) * 180.0 / std::numbers::pi};
 }
 
-// Of the frames before `known`, the nearest.
+// The nearest of the frames before `known`.
 Apart nearest(const Place& place, std::size_t known, std::size_t i) {
   Apart best{1e9, 1e9};
   for (std::size_t j = 0; j < known; ++j) {
@@ -93,7 +93,7 @@ Apart nearest(const Place& place, std::size_t known, std::size_t i) {
   return best;
 }
 
-// Frames to go on at: of the known ones, or of those after them that are near a known one.
+// The frames at which to continue: known ones, or later ones that are near a known one.
 std::vector<std::size_t> choices(const Place& place, std::size_t known, bool visited) {
   std::vector<std::size_t> frames;
   for (std::size_t i = 0; i + kFramesAfter < place.T_truth_camera.size(); ++i) {
@@ -112,8 +112,8 @@ std::vector<std::size_t> choices(const Place& place, std::size_t known, bool vis
   return frames;
 }
 
-// A copy of this process goes on from here, so that the known part is run once; what it writes on
-// `file` comes back.
+// Forks this process here, so that the known part is run only once; returns the text that the copy
+// writes to `file`.
 TrialOutcome go_on(RelocationTrial& trial, const Place& place, std::size_t jump_to) {
   int pipe_ends[2] = {};
   if (pipe(pipe_ends) != 0) throw Error("no pipe");

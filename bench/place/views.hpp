@@ -11,7 +11,7 @@
 
 namespace stillmap {
 
-/// An image of a place, and where it was taken.
+/// An image of a place, with the pose at which it was taken.
 struct View {
   std::string room;
   double time_s = 0;  ///< since the sequence began
@@ -27,8 +27,8 @@ struct View {
 enum class Relation { kSame, kNeither, kDifferent };
 
 /// Same: one room, less than 0.5 m and 30 degrees apart. Different: two rooms, or more than 1.5 m
-/// or 60 degrees apart, which leaves little in common. In between there is no right answer, nor
-/// where two rooms (HOUSE.ROOM) of one house have the same furniture at this place.
+/// or 60 degrees apart, which leaves little in common. In between there is no right answer, and
+/// none where two rooms (HOUSE.ROOM) of one house have the same furniture at this place.
 [[nodiscard]] Relation relation(const View& a, const View& b);
 
 [[nodiscard]] double angle_deg(const View& a, const View& b);

@@ -14,7 +14,7 @@ namespace {
 // Samples of a neighbourhood of 4 x 4 use different rays, so that smoothing over it sees them all.
 constexpr int kPattern = 4;
 constexpr int kStep = 3;           // pixels from one sample to the next
-constexpr float kNearness = 0.6F;  // metres within which things darken corners
+constexpr float kNearness = 0.6F;  // metres within which near surfaces darken corners
 constexpr float kOffSurface = 2e-3F;
 
 // Entry i of n well spread points in the unit square (Hammersley's).
@@ -48,7 +48,7 @@ Eigen::Vector3f direction_around(const Eigen::Vector3f& normal, const Eigen::Vec
          std::sqrt(1.F - at.y()) * normal;
 }
 
-// Rays that are traced when a packet is full; those that get through set their target to 1.
+// Rays that are traced when a packet is full; unblocked rays set their target to 1.
 class RayQueue {
  public:
   explicit RayQueue(const RayScene& scene) : scene_(&scene) {}
@@ -147,7 +147,7 @@ void Lighting::trace(const RayScene& scene, const World& world) {
       const Eigen::Vector3f direction =
           lamp_point(world.lamps[lamp], spread_point(spot, kSpots)) - origin;
       if (direction.dot(sample.surfel->normal) <= 0) return;
-      // Not as far as the lamp's own panel.
+      // Ends before the panel of the lamp itself.
       queue.add({origin, direction, 0.98F}, sample.openness.lamps[lamp]);
     });
   }
@@ -199,7 +199,7 @@ float light_on(const World& world,
                const Eigen::Vector3f& point,
                const Eigen::Vector3f& normal,
                const Openness& openness) {
-  // A little more from above than from below: the ceiling is white.
+  // Slightly more from above than from below: the ceiling is white.
   const float ambient = static_cast<float>(world.ambient) * (0.85F + 0.15F * normal.z());
   float light = ambient * openness.around;
   for (std::size_t i = 0; i < world.lamps.size(); ++i) {

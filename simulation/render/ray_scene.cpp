@@ -12,7 +12,7 @@
 namespace stillmap {
 namespace {
 
-// Embree's handles count references; these give theirs back.
+// Owners of Embree's reference-counted handles.
 template <class Handle, void (*release)(Handle)>
 class Owned {
  public:
@@ -64,7 +64,7 @@ void share_triangles(const Geometry& geometry, const std::vector<Mesh::Triangle>
                              triangles.size());
 }
 
-// What is at `open` and goes straight to `close`, at a time between 0 and 1.
+// Linear interpolation from `open` to `close`, at a time between 0 and 1.
 Eigen::Matrix4f between(const Eigen::Isometry3d& open, const Eigen::Isometry3d& close, float time) {
   return (1.F - time) * open.cast<float>().matrix() + time * close.cast<float>().matrix();
 }
@@ -88,7 +88,7 @@ Exposure Exposure::still(const Eigen::Isometry3d& T_world_camera, WorldState sta
   return {T_world_camera, T_world_camera, T_world_camera, state, state};
 }
 
-// One scene for all that cannot move, in world axes, and one for each movable thing.
+// One scene for all immovable surfaces, in world axes, and one for each movable thing.
 struct WorldGeometry::Parts {
   std::shared_ptr<const World> world;
   Device device;
@@ -150,13 +150,13 @@ const World& WorldGeometry::world() const {
   return *parts_->world;
 }
 
-// Geometry 0 is what cannot move, then come the movable things, then the people.
+// Geometry 0 is the immovable scene; the movable things follow, then the people.
 struct RayScene::Parts {
   struct PersonSurface {
     PosedSurface open, close;
     bool moves = false;
   };
-  // The world at one moment. Cheaper to build one for each than one that knows of time.
+  // The world at one moment. One scene per moment is cheaper than one with moving geometry.
   struct Instant {
     Scene scene;
     std::vector<std::vector<float>> people;  // vertices

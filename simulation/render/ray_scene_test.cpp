@@ -14,7 +14,7 @@ struct Nearest {
   std::uint32_t object = SurfaceHit::kNothing;
 };
 
-// Every triangle tried, by the linear system o + t d = a + u (b - a) + v (c - a).
+// Tests every triangle by the linear system o + t d = a + u (b - a) + v (c - a).
 Nearest brute_force(const World& world, const WorldState& state, const Ray& ray) {
   Nearest nearest;
   for (std::uint32_t i = 0; i < world.things.size(); ++i) {

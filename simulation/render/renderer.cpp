@@ -29,14 +29,14 @@ std::uint8_t to_byte(float value) {
   return static_cast<std::uint8_t>(std::clamp(value + 0.5F, 0.F, 255.F));
 }
 
-// What rays through two opposite quarters of a pixel meet.
+// The hits of rays through two opposite quarters of a pixel.
 struct TracedPixel {
   cv::Point at;
   std::array<std::size_t, 2> quarters{0, 3};
   std::array<SurfaceHit, 2> hits;
 };
 
-// All that colouring the pixels of one image takes.
+// The data for colouring the pixels of one image.
 class Painter {
  public:
   Painter(const World& world,
@@ -106,14 +106,14 @@ class Painter {
   const MovingCamera* camera_;
 };
 
-// With all four quarters in the pixel's centre.
+// The pixel's rays with all four quarters at its centre.
 PixelRays without_extent(PixelRays rays) {
   rays.quarters.fill(rays.center);
   return rays;
 }
 
-// Traces two opposite quarters of some pixels, one diagonal or the other by turns. Rays of one
-// moment and of neighbouring pixels are traced together: they take much the same way.
+// Traces two opposite quarters of some pixels, alternating between the diagonals. Rays of one
+// moment and of neighbouring pixels are traced together, because their paths are similar.
 std::vector<TracedPixel> trace_quarters(const RayScene& scene,
                                         const MovingCamera& camera,
                                         const cv::Mat2f& quarter_rays,

@@ -11,8 +11,8 @@
 namespace stillmap {
 namespace {
 
-// Smooth waves, which any good filter leaves alone, on a wall; before it a plain square thing with
-// an id. No lamps: everything in even light.
+// Smooth waves, which any good filter preserves, on a wall; before it a plain square thing with an
+// id. No lamps: the light is uniform.
 World wall_and_square() {
   World world;
   world.ambient = 1.0;
@@ -58,8 +58,8 @@ TEST(Renderer, DepthIsThatOfThePlanes) {
   }
 }
 
-// What a camera sees that takes very many still pictures while the shutter is open, each pixel at a
-// finer raster: an independent way to the same colour.
+// The mean of very many still pictures, with a finer raster, while the shutter is open: an
+// independent way to the same colour.
 cv::Mat3b average_of_stills(const Setting& s, const Exposure& exposure, int times, int finer) {
   CameraModel fine = small_camera(s.camera.width_px * finer, s.camera.height_px * finer);
   fine.cx = finer * (s.camera.cx + 0.5) - 0.5;
@@ -142,7 +142,7 @@ TEST(Renderer, ShadowsOfALampAreWhereItIsHidden) {
   made.lamps.push_back({{0, 0, 2}, {0.5, 0, 0}, {0, 0.5, 0}, 4.0});
   const auto world = std::make_shared<const World>(made);
 
-  // Looks down from below the plate.
+  // The camera looks down from below the plate.
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   T_world_camera.linear() = Eigen::Vector3d(1, -1, -1).asDiagonal();
   T_world_camera.translation() = Eigen::Vector3d(0, 0, 0.9);

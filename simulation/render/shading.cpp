@@ -23,8 +23,8 @@ Eigen::Vector2f uv_at(const SurfaceTriangle& t, const Eigen::Vector2f& b) {
   return t.uvs[0] + b.x() * (t.uvs[1] - t.uvs[0]) + b.y() * (t.uvs[2] - t.uvs[0]);
 }
 
-// Barycentric coordinates brought back onto the triangle's neighbourhood: far outside, at a
-// silhouette, an extrapolated normal means nothing.
+// Barycentric coordinates clamped to the triangle's neighbourhood: far outside, at a silhouette, an
+// extrapolated normal is meaningless.
 Eigen::Vector3f normal_at(const SurfaceTriangle& t,
                           const Eigen::Vector2f& b,
                           const Eigen::Vector3f& direction) {
@@ -143,7 +143,7 @@ SurfacePatch PixelSurface::patch_at(const TrianglePlane& plane, const PlaneMeeti
 }
 
 Eigen::Vector3f lit(const Eigen::Vector3f& albedo, const Material& material, float light) {
-  // Colours are as a screen shows them, about the square root of light.
+  // Colours are those of a screen: about the square root of light.
   return albedo * std::sqrt(std::max(light, material.glow));
 }
 

@@ -51,7 +51,7 @@ bool continuous(const Surfel& a, const Surfel& b) {
   if (!a.hit.valid()) return true;
   constexpr float kSameDirection = 0.6F;  // cosine
   if (a.normal.dot(b.normal) < kSameDirection) return false;
-  // Off the other's tangent plane by less than the bend of the normals explains.
+  // The bend of the normals must explain the distance from the other's tangent plane.
   const Eigen::Vector3f step = b.point - a.point;
   const float off = std::max(std::abs(a.normal.dot(step)), std::abs(b.normal.dot(step)));
   return off < 0.002F + 0.4F * step.norm();

@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 // The seat's top is at 0.46; the pelvis joint is that much over it.
 constexpr double kSeatedPelvisHeight_m = 0.575;
 constexpr double kSeatedPitch = -0.10;
-constexpr double kRiseLean = 0.75;  // how far one bends forward to get up
+constexpr double kRiseLean = 0.75;  // forward lean while getting up
 constexpr double kArmSwing = 0.75;  // radians a metre of stride
 constexpr double kChestTwist = 0.22;
 

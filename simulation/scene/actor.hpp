@@ -22,7 +22,7 @@ struct Grip {
   EasedTrack holds{{{0.0, 0.0}}};              ///< 1 while held, 0 while not
 };
 
-/// A place to sit: the pelvis on the seat, the feet on the path.
+/// A seat: the pelvis is on the seat, the feet are on the path.
 struct Seat {
   FloorPose pose;
   EasedTrack seated{{{0.0, 0.0}}};                 ///< 1 while seated

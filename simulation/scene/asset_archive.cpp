@@ -201,7 +201,7 @@ std::string AssetArchive::read(const std::string& entry, std::size_t max_bytes) 
   if (file == nullptr) {
     throw Error("{}: cannot be unpacked ({})", place(entry), zip_strerror(zip_->handle));
   }
-  // One byte more than promised: an entry that has it is not what it says to be.
+  // One byte more than declared: an entry that has it contradicts its declaration.
   std::string bytes(stat.size + 1, '\0');
   const zip_int64_t count = zip_fread(file, bytes.data(), bytes.size());
   const std::string reason = zip_file_strerror(file);

@@ -36,10 +36,10 @@ class AssetArchive {
   [[nodiscard]] bool contains(const std::string& entry) const;
 
   /// The content of an entry. Throws Error for a missing or damaged entry, a name that leads out of
-  /// the archive, and a declared size over `max_bytes`, of which no more is allocated.
+  /// the archive, and a declared size over `max_bytes`; never allocates more than `max_bytes`.
   [[nodiscard]] std::string read(const std::string& entry, std::size_t max_bytes) const;
 
-  /// Names a part of the archive in messages.
+  /// The name of a part of the archive, for messages.
   [[nodiscard]] std::string place(const std::string& entry) const;
 
  private:

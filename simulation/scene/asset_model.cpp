@@ -23,7 +23,7 @@ constexpr std::size_t kMaxMaterialBytes = std::size_t{1} << 20U;
 constexpr std::size_t kMaxPictureBytes = std::size_t{32} << 20U;
 constexpr std::size_t kMaxTriangles = 400000;
 constexpr int kMaxPictureSide_px = 1024;
-constexpr float kClear = 0.3F;  // what lets more light through is left out
+constexpr float kClear = 0.3F;  // more transparent materials are left out
 
 std::string folder_of(const std::string& entry) {
   return entry.substr(0, entry.find_last_of('/') + 1);
@@ -77,7 +77,7 @@ Eigen::Vector3f face_normal(const Mesh& mesh, std::size_t triangle) {
   return (mesh.positions[t[1]] - a).cross(mesh.positions[t[2]] - a);
 }
 
-// The triangle's normal at one of its corners: that of the faces around which are not turned far
+// The triangle's normal at one of its corners: the mean of adjacent faces that are not turned far
 // against it, so that edges stay sharp.
 Eigen::Vector3f creased_normal(const Mesh& mesh,
                                std::size_t triangle,
@@ -92,7 +92,7 @@ Eigen::Vector3f creased_normal(const Mesh& mesh,
   return sum.norm() > 0 ? Eigen::Vector3f(sum.normalized()) : Eigen::Vector3f::UnitY();
 }
 
-// The same with a normal of length 1 where there was none; corners on edges become several.
+// The same with unit normals where there were none; corners on sharp edges are duplicated.
 Mesh with_normals(const Mesh& mesh) {
   std::map<Place, std::vector<std::size_t>> around;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -161,7 +161,7 @@ class MeshMaker {
     }
   }
 
-  // Where the numbers of item `index` begin in a list of `width` numbers an item.
+  // The offset of item `index` in a list of `width` numbers per item.
   [[nodiscard]] std::size_t offset(int index, std::size_t width, std::size_t size) const {
     if (index < 0 || (static_cast<std::size_t>(index) + 1) * width > size) {
       throw Error("{}: a face names corner {} of {}", place_, index + 1, size / width);
@@ -169,8 +169,8 @@ class MeshMaker {
     return static_cast<std::size_t>(index) * width;
   }
 
-  // Equal for both sides of a triangle: some models have each twice, once for either side, which
-  // would fight over who is in front.
+  // A key that is equal for both sides of a triangle: some models have each triangle twice, once
+  // per side, at the same depth.
   [[nodiscard]] std::array<Place, 3> places_of(const Mesh::Triangle& triangle) const {
     std::array<Place, 3> places;
     for (std::size_t i = 0; i < 3; ++i) places[i] = place_of(mesh_.positions[triangle[i]]);
@@ -209,11 +209,11 @@ class MeshMaker {
   const std::vector<tinyobj::material_t>& materials_;
   std::string place_;
   std::map<Key, std::uint32_t> corners_;
-  std::set<std::array<Place, 3>> triangles_;  // those that there are
+  std::set<std::array<Place, 3>> triangles_;  // triangles so far
   Mesh mesh_;
 };
 
-// Which materials' pictures have to start again beyond their edges.
+// The materials whose pictures must repeat beyond their edges.
 std::vector<bool> repeating_materials(const Mesh& mesh, std::size_t materials) {
   constexpr float kEdge = 0.01F;
   std::vector<bool> repeats(materials, false);
@@ -228,7 +228,7 @@ std::vector<bool> repeating_materials(const Mesh& mesh, std::size_t materials) {
   return repeats;
 }
 
-// The file's materials in its order, then one for what has none.
+// The file's materials in its order, then one for triangles without a material.
 MaterialLibrary load_materials(const AssetArchive& archive,
                                const std::string& folder,
                                const std::vector<tinyobj::material_t>& materials,
@@ -248,7 +248,7 @@ MaterialLibrary load_materials(const AssetArchive& archive,
   return library;
 }
 
-// Into our axes (x to the front, y left, z up) and to the catalogue's size.
+// Transforms to axes x to the front, y left, z up and to the catalogue's size.
 void place_on_floor(Mesh& mesh, const CatalogueEntry& entry, const std::string& place) {
   Eigen::Matrix3f axes;
   axes << 0, 0, 1, 1, 0, 0, 0, 1, 0;

@@ -70,7 +70,7 @@ AssetModel load_cube(const Entries& entries) {
   return load_model(archive, archive.model("cube"));
 }
 
-// What loading says is wrong; empty where nothing is.
+// The error of loading; empty if there is none.
 std::string complaint(const Entries& entries) {
   try {
     (void)load_cube(entries);
@@ -220,7 +220,7 @@ TEST(AssetArchive, RefusesEntriesOverALimitBeforeUnpackingThem) {
   EXPECT_THROW((void)archive.read("bomb", (8U << 20U) - 1), Error);
 }
 
-// Whatever byte is wrong: an Error, or the file's own check sums don't cover it.
+// Any wrong byte gives an Error, unless the file's checksums do not cover it.
 TEST(AssetArchive, DamageIsAnError) {
   const TemporaryFolder folder;
   const fs::path path = write_zip(folder, cube_entries());

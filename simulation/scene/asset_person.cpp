@@ -23,11 +23,11 @@ struct LimbPlaces {
   BodyPlace end;
 };
 
-// Where the joints of a model are, measured in slices of it at the heights that a human of that
-// size has them.
+// The joints of a model, measured in slices of it at the heights of the joints of a human of that
+// size.
 struct FittedModel {
   std::string_view name;
-  double height_m;  // that it is made; some models are of youths
+  double height_m;  // target height; some models are of youths
   BodyPlace spine, chest, neck, head;
   LimbPlaces left_arm, right_arm, left_leg, right_leg;
 };
@@ -80,7 +80,7 @@ Vector3d in_metres(const BodyPlace& place) {
   return Vector3d(place.front, place.left, place.up) / 100.0;
 }
 
-// The pelvis joint is between the hips and 5 cm over them.
+// The pelvis joint is between the hips, 5 cm above them.
 Vector3d pelvis_of(const FittedModel& model) {
   return 0.5 * (in_metres(model.left_leg.root) + in_metres(model.right_leg.root)) +
          Vector3d(0, 0, 0.05);

@@ -15,7 +15,7 @@ struct PersonAsset {
   Skeleton skeleton;  ///< in the posture of the model; its limbs may be bent
 };
 
-/// The people of the Reallusion library of Sweet Home 3D that can walk and sit: those standing and
+/// The people of the Reallusion library of Sweet Home 3D that can walk and sit: the standing ones
 /// in trousers.
 [[nodiscard]] std::vector<PersonAsset> load_people(const AssetArchive& archive);
 

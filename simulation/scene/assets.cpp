@@ -20,7 +20,7 @@ struct ChairModel {
   std::string_view library;
   std::string_view name;
   double seat_m;   // the height of its seat
-  double front_m;  // how far it is moved so that the sitter's back meets the chair's
+  double front_m;  // shift to the front that makes the sitter's back meet the chair's
   double left_m;
 };
 constexpr std::array<ChairModel, 2> kChairs{{
@@ -45,7 +45,7 @@ constexpr std::array<Library, 3> kLibraries{{
      "(http://creativecommons.org/licenses/by/3.0/us/); adapted in size"},
 }};
 
-// A chair with its seat and its back as high as those that the people of the office know.
+// A chair scaled to the seat and back heights of make_chair(), for which people's poses are made.
 AssetModel load_chair(const AssetArchive& archive, const ChairModel& chair) {
   const CatalogueEntry& entry = archive.model(std::string(chair.name));
   AssetModel model = load_model(archive, entry);

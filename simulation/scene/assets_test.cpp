@@ -124,7 +124,7 @@ TEST_F(FurniturePackage, LimbsOfBothSidesAreOfOneLength) {
   }
 }
 
-// The share of the surface's edges that are stretched more than 2.5 times, at worst over a play.
+// The greatest share, over a scene, of the surface's edges that are stretched more than 2.5 times.
 double worst_share_stretched(const Assets* assets, Activity activity, std::uint32_t seed) {
   World office = make_office(1);
   add_people(office, activity, seed, assets);
@@ -153,7 +153,7 @@ double worst_share_stretched(const Assets* assets, Activity activity, std::uint3
 }
 
 TEST_F(FurniturePackage, PeopleBendWithoutTearing) {
-  EXPECT_LT(worst_share_stretched(nullptr, Activity::kWalking, 0), 0.002);  // those made in code
+  EXPECT_LT(worst_share_stretched(nullptr, Activity::kWalking, 0), 0.002);  // people made in code
   for (const Activity activity : {Activity::kWalking, Activity::kSitting}) {
     for (std::uint32_t seed = 0; seed < assets()->people.size(); ++seed) {
       const double share = worst_share_stretched(&*assets(), activity, seed);

@@ -62,7 +62,7 @@ TEST(Body, MovesAsAWholeWithThePelvis) {
   }
 }
 
-// The hand's place worked out joint by joint, without the body's code.
+// The hand's position computed joint by joint, without the body's code.
 TEST(Body, JointsFollowTheirParents) {
   const BodyPose pose = some_pose();
   const auto& rest = person().skeleton().positions;
@@ -81,7 +81,7 @@ TEST(Body, JointsFollowTheirParents) {
   EXPECT_LT((joints[index(Joint::kLeftWrist)].translation() - expected).norm(), 1e-12);
 }
 
-// What a bent limb may move: nothing on the other side, nor the trunk that the arms hang beside.
+// A bent limb must not move the other side, nor the trunk beside the arms.
 TEST(Body, LimbsDoNotPullAtEachOther) {
   BodyPose pose;
   pose.rotations[index(Joint::kLeftHip)] = about(Vector3d::UnitY(), -1.2);

@@ -12,7 +12,7 @@
 namespace stillmap {
 namespace {
 
-constexpr int kShift = 4;  // places are drawn with 1/16 of a texel
+constexpr int kShift = 4;  // positions are drawn with 1/16 of a texel
 
 cv::Scalar scalar(const Rgb& c) {
   return {double(c[0]), double(c[1]), double(c[2])};
@@ -82,7 +82,7 @@ int Canvas::texels(double metres) const {
 
 cv::Point Canvas::shifted(cv::Point2d place) const {
   constexpr double kUnits = 1 << kShift;
-  // Integer places are the centres of texels.
+  // Integer positions are the centres of texels.
   return {static_cast<int>(std::lround((place.x / texel_m_ - 0.5) * kUnits)),
           static_cast<int>(std::lround((place.y / texel_m_ - 0.5) * kUnits))};
 }

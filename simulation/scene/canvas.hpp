@@ -40,10 +40,10 @@ class Canvas {
   void polygon(const std::vector<cv::Point2d>& corners, const Rgb& color);
   void disc(cv::Point2d center, double radius_m, const Rgb& color);
 
-  /// One line of letters in the height of `area`, made smaller where it is too long.
+  /// One line of letters in the height of `area`, reduced if it is too long.
   void text(const std::string& words, const cv::Rect2d& area, const Rgb& ink);
 
-  /// Print that is too small to be read: lines of word-like dashes.
+  /// Print too small to read: lines of word-like dashes.
   void small_print(const cv::Rect2d& area, double line_m, const Rgb& ink, HashStream& rng);
 
   /// Adds noise of several octaves, each half as coarse as the one before, of `contrast` grey

@@ -28,7 +28,7 @@ std::size_t people_in(Activity activity) {
 
 }  // namespace
 
-/// The roles, with who and what plays them.
+/// The roles, with their people and things.
 struct Choreography::Cast {
   struct Prop {
     std::size_t thing;

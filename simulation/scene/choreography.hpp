@@ -17,7 +17,7 @@ enum class Activity {
 };
 
 /// Adds the people of an activity to the office of make_office(). Their clothes vary with `seed`;
-/// where `assets` has people, it says which of them come first.
+/// where `assets` has people, the seed chooses which of them come first.
 void add_people(World& office,
                 Activity activity,
                 std::uint32_t seed,

@@ -59,7 +59,7 @@ Vector2d pelvis_of(const WorldState& state, std::size_t person) {
   return state.people[person].T_world_pelvis.translation().head<2>();
 }
 
-// A box that nobody may be in.
+// A box that no person may enter.
 struct Solid {
   const char* name;
   Vector3d low;
@@ -259,7 +259,7 @@ TEST(Choreography, SomeoneCrossesCloseBeforeTheCameraInEachHalf) {
   }
 }
 
-// The share of a 64 x 48 grid over the usual view that corners of people fall into.
+// The share of the cells of a 64 x 48 grid over the usual image that hold vertices of people.
 double share_of_people(const WorldState& state) {
   constexpr int kWidth = 64;
   constexpr int kHeight = 48;

@@ -58,7 +58,7 @@ class Lattice {
         place(first) + Eigen::Vector3f::Constant(cell_ * 0.5F * (kBlock - 1));
     const float at_middle = flesh.sample(middle).distance;
     const float half_diagonal = 0.866F * cell_ * kBlock;
-    // Distances to stretched parts are off by some; hence twice the block's size.
+    // Distances to stretched parts are approximate; hence twice the block's size.
     const bool empty = std::abs(at_middle) > 2.F * half_diagonal;
     const Flesh parts = empty ? Flesh(std::vector<FleshPart>{}) : flesh.near(middle, half_diagonal);
     for (int z = 0; z < kBlock; ++z) {
@@ -81,7 +81,7 @@ Eigen::Vector3i corner_offset(int corner) {
   return {corner & 1, (corner >> 1) & 1, (corner >> 2) & 1};
 }
 
-// The mean of where the surface crosses a cell's edges; none where it doesn't.
+// The mean of the points where the surface crosses a cell's edges; none where it does not.
 std::optional<Eigen::Vector3f> mean_crossing(const Lattice& lattice, const Eigen::Vector3i& cell) {
   std::array<float, 8> values;
   bool all_in = true;

@@ -18,9 +18,9 @@ struct FleshPart {
   float to_radius = 0;
   Eigen::Matrix3f squeeze = Eigen::Matrix3f::Identity();
   bool flat_end = false;   ///< cut across at `to` instead of rounded
-  std::uint8_t layer = 0;  ///< parts of one layer melt together, layers cover each other
+  std::uint8_t layer = 0;  ///< parts of one layer blend smoothly, layers cover each other
   std::uint8_t chart = 0;  ///< free to use; goes with the surface nearest to the part
-  float blend_m = 0.03F;   ///< how widely it melts together with the others of its layer
+  float blend_m = 0.03F;   ///< width of the blend with other parts of its layer
 };
 
 /// The solid near a position.
@@ -39,14 +39,14 @@ class Flesh {
 
   [[nodiscard]] FleshSample sample(const Eigen::Vector3f& p) const;
 
-  /// The parts that matter within `reach_m` of a place.
+  /// The parts that affect distances within `reach_m` of a position.
   [[nodiscard]] Flesh near(const Eigen::Vector3f& p, float reach_m) const;
 
-  /// Direction in which the distance grows, at a place near the surface; unit.
+  /// Unit direction in which the distance grows, at a position near the surface.
   [[nodiscard]] Eigen::Vector3f normal(const Eigen::Vector3f& p) const;
 
  private:
-  // A part with what its distance needs, worked out once.
+  // A part with the precomputed values for its distance.
   struct Prepared {
     FleshPart part;
     Eigen::Vector3f squeezed_from;

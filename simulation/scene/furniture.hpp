@@ -5,7 +5,7 @@
 
 namespace stillmap {
 
-/// What stands and lies in an office. Each mesh stands on z = 0 of its own frame.
+/// Furniture and objects of an office. Each mesh stands on z = 0 of its own frame.
 
 // For desks: their user is on the -x side and looks at +x. Screens, keys and covers face the user.
 [[nodiscard]] Mesh make_desk(Painter& painter);  ///< top 1.6 (y) x 0.8 (x), upper side at z = 0.73

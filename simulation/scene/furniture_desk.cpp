@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Desks and what stands on them, of furniture.hpp.
+// Functions of furniture.hpp: desks and the things on them.
 #include <cmath>
 #include <numbers>
 
@@ -233,7 +233,7 @@ Mesh make_papers(Painter& painter, int sheets) {
   Mesh mesh;
   for (int i = 0; i < sheets; ++i) {
     const Surface page = painter.picture(paper_picture({0.21, 0.297}, painter.next_seed()));
-    // One sheet beside or upon the other, each turned a little.
+    // Sheets beside or upon one another, each slightly turned.
     const double aside = 0.08 * std::sin(2.4 * i), ahead = 0.05 * std::sin(1.7 * i + 1.0);
     mesh.append(make_box({0.297, 0.21, 0.002}, with(blank, kTop, page)),
                 placed(ahead, aside, 0.002 * i, 17.0 * std::sin(3.1 * i)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What stands on the floor, of furniture.hpp; the chair is in chair.cpp.
+// Functions of furniture.hpp: things on the floor; the chair is in chair.cpp.
 #include <cmath>
 #include <numbers>
 
@@ -112,7 +112,7 @@ Mesh make_book_row(Painter& painter, double length, std::uint64_t layout_seed) {
     const Mesh book = make_standing_book(painter, {thick, deep, high}, tones);
     const bool leans = layout.below(9) == 0 && x + thick + 0.1 < length;
     Eigen::Isometry3d T = placed(x, back, 0);
-    if (leans) {  // to the right, on the next one's side: its foot is left of its head
+    if (leans) {  // to the right, on the next book: its foot is left of its head
       T.translate(Vector3d(0, 0, thick * std::sin(0.2)));
       T.rotate(Eigen::AngleAxisd(0.2, Vector3d::UnitY()));
       x += high * std::sin(0.2);

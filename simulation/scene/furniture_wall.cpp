@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What hangs on walls, and the walls, of furniture.hpp.
+// Functions of furniture.hpp: walls and the things on them.
 #include "simulation/scene/furniture.hpp"
 
 namespace stillmap {

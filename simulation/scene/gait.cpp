@@ -15,8 +15,8 @@ using Eigen::Vector3d;
 constexpr double kStep_s = 0.52;
 constexpr double kToeOut = 0.10;
 constexpr double kLift_m = 0.075;
-constexpr double kToeOff = 0.50;      // pitch of a foot that leaves, at a full step
-constexpr double kHeelStrike = 0.28;  // and of one that comes down
+constexpr double kToeOff = 0.50;      // pitch of a lifting foot, at a full step
+constexpr double kHeelStrike = 0.28;  // pitch of a landing foot
 constexpr double kToe_m = 0.135;      // pivots, from below the ankle
 constexpr double kHeel_m = -0.045;
 constexpr double kFullStep_m = 1.1;
@@ -71,7 +71,7 @@ void Footfalls::add_walk(const FloorPath& path, const Walk& walk) {
   const std::size_t first_side = turn < 0 ? 1 : 0;
   for (int k = 0; k < count; ++k) {
     const std::size_t side = (first_side + std::size_t(k)) % 2;
-    // Midway through the time that the foot will bear; the last two come down side by side.
+    // The middle of the time for which the foot bears weight; the last two end side by side.
     const double middle_s = k + 2 >= count ? walk.end_s : walk.start_s + (k + 1.5) * step_s;
     const FloorPose from = steps_[side].empty() ? first_[side] : steps_[side].back().to;
     steps_[side].push_back({walk.start_s + (k + 0.06) * step_s,
@@ -90,7 +90,7 @@ Footfalls::Foot Footfalls::at(double t_s, BodySide body_side) const {
   for (const Step& step : steps_[side]) {
     const double lasts = step.lands_s - step.lifts_s;
     const double size = std::min(1.0, (step.to.position - step.from.position).norm() / kFullStep_m);
-    // The heel rises before the toes leave, and the toes come down after the heel has.
+    // The heel rises before the toes lift, and lands before the toes do.
     toe_off += kToeOff * size * bump((t_s - step.lifts_s + 0.35 * lasts) / (0.90 * lasts));
     heel_strike += kHeelStrike * size * bump((t_s - step.lands_s + 0.50 * lasts) / (0.85 * lasts));
     if (t_s <= step.lifts_s) continue;

@@ -23,8 +23,8 @@ class Footfalls {
   /// The path rests outside the walks. `half_width_m`: from the path's middle to each ankle.
   Footfalls(const FloorPath& path, const std::vector<Walk>& walks, double half_width_m);
 
-  /// A foot's frame at a time: origin on the sole below the ankle, x to the toes; and how high the
-  /// step lifts it, 0 while it stands.
+  /// A foot's frame at a time: origin on the sole below the ankle, x to the toes; and its lift by
+  /// the step, 0 while it stands.
   struct Foot {
     Eigen::Isometry3d T_world_sole;
     double lift_m;
@@ -58,7 +58,7 @@ struct Stance {
                                             double pelvis_height_m,
                                             const Stance& stance);
 
-/// How far the left foot is ahead of the right one.
+/// The distance of the left foot ahead of the right one, metres.
 [[nodiscard]] double stride_of(const Stance& stance);
 
 /// The ankle of a foot.

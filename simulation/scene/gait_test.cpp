@@ -81,7 +81,7 @@ TEST(Pelvis, IsNoHigherThanTheLegsReachWhileWalking) {
     highest = std::max(highest, pelvis.translation().z());
   }
   EXPECT_GT(highest, kHeight - 0.03);
-  EXPECT_GT(highest - lowest, 0.01);  // it bobs
+  EXPECT_GT(highest - lowest, 0.01);  // the pelvis moves up and down
   EXPECT_LT(highest - lowest, 0.12);
 }
 

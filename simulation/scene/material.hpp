@@ -14,8 +14,8 @@ namespace stillmap {
 /// (1, 1) the bottom right.
 struct Material {
   MipTexture texture;
-  bool repeats = false;  ///< beyond [0, 1] the picture starts again; else its edge's colour goes on
-  float glow = 0.F;      ///< least light that it seems to be in, in [0, 1]: screens, lamps
+  bool repeats = false;  ///< beyond [0, 1] the picture repeats; else its edge's colour continues
+  float glow = 0.F;      ///< least apparent light on it, in [0, 1]: screens, lamps
 };
 
 /// A position in a MaterialLibrary.

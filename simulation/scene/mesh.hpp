@@ -11,8 +11,8 @@
 
 namespace stillmap {
 
-/// A surface of triangles with a picture on each. Positions in metres, in the frame of what the
-/// surface belongs to.
+/// A surface of triangles with a picture on each. Positions in metres, in the frame of the owner of
+/// the surface.
 struct Mesh {
   using Triangle = std::array<std::uint32_t, 3>;  ///< indices of corners
 

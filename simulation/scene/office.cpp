@@ -167,7 +167,7 @@ void OfficeBuilder::add_west_wall() {
   add("poster", science_poster({0.5, 0.7}), on_west(-1.5, 1.15));
 }
 
-// Blank from x = -2.9 to -1.3, but for a calendar.
+// Blank from x = -2.9 to -1.3, except for a calendar.
 void OfficeBuilder::add_south_wall() {
   add("poster", framed_landscape({0.9, 0.6}, {44, 44, 46}), on_south(-0.35, 1.25), "picture");
   add("poster", science_poster({0.7, 1.0}), on_south(0.45, 0.95));
@@ -234,7 +234,7 @@ void OfficeBuilder::add_movables() {
       "box_1", "box", 13, make_carton(painter_, {0.40, 0.32, 0.30}), placed(1.2, -2.66, 0.75, 0));
 }
 
-// Each of the models in its turn.
+// Uses the models in turn.
 void OfficeBuilder::replace_chairs() {
   if (assets_ == nullptr || assets_->chairs.empty()) return;
   std::size_t next = 0;

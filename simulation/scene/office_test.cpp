@@ -88,7 +88,7 @@ TEST(Office, OnlyWhatMayBeMovedHasAnId) {
   for (const auto& [name, id] : expected) EXPECT_TRUE(names.contains(name)) << name;
 }
 
-// Where cameras may be: about the middle, on half a sphere, and around a circle.
+// Positions of cameras: near the middle, on a half sphere, and on a circle.
 std::vector<Vector3d> camera_places() {
   std::vector<Vector3d> places;
   for (int i = 0; i < 27; ++i) {
@@ -132,7 +132,7 @@ TEST(Office, LeavesTheLanesFree) {
 
 TEST(Office, ChairsHaveSeatsAndBacksWhereSittersExpectThem) {
   for (const std::string name : {"chair_1", "chair_2", "chair_3"}) {
-    Bounds middle, back;  // of the seat, and what rises behind the sitter
+    Bounds middle, back;  // of the seat, and of the back behind the sitter
     for (const Eigen::Vector3f& p : thing_named(office(), name).mesh.positions) {
       if (std::hypot(p.x(), p.y()) < 0.15F) middle.extend(p.cast<double>());
       if (p.z() > 0.6F && std::abs(p.y()) < 0.15F) back.extend(p.cast<double>());
@@ -158,7 +158,7 @@ TEST(Office, StandsWhereItsLayoutSays) {
   EXPECT_NEAR(bounds_of(thing_named(office(), "side_table_1")).max().z(), 0.60, 1e-6);
 }
 
-// Nothing floats or sinks: what is not on the floor or a wall touches something below it.
+// Nothing floats or sinks: a thing that is not on the floor or a wall touches a thing below it.
 TEST(Office, ThingsOnTopsTouchThem) {
   for (const char* name : {"monitor_1", "keyboard_1", "mouse_1", "cup_1", "papers_1", "laptop_1"}) {
     EXPECT_NEAR(bounds_of(thing_named(office(), name)).min().z(), 0.73, 2e-3) << name;
@@ -205,7 +205,7 @@ TEST(Office, IsAFunctionOfItsSeedWhichVariesPicturesAlone) {
   EXPECT_NE(one.pictures, other.pictures);
 }
 
-// Equal pictures in two places would confuse who recognises places.
+// Equal pictures in two places would confuse place recognition.
 TEST(Office, NoTwoPicturesAreEqual) {
   std::map<std::uint64_t, std::size_t> seen;
   for (std::size_t i = 0; i < office().materials.size(); ++i) {

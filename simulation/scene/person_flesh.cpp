@@ -17,7 +17,7 @@ constexpr std::size_t index(Joint joint) {
   return static_cast<std::size_t>(joint);
 }
 
-// What a left and a right limb have in common.
+// The side of a limb, for parts common to left and right.
 struct Side {
   float y;  // +1 left, -1 right
   PersonChart arm;
@@ -28,7 +28,7 @@ struct Side {
 constexpr Side kLeft{1.F, PersonChart::kLeftArm, PersonChart::kLeftLeg};
 constexpr Side kRight{-1.F, PersonChart::kRightArm, PersonChart::kRightLeg};
 
-// Builds the parts at 1.75 m of height; scaled in the end.
+// Builds the parts for a height of 1.75 m; they are scaled at the end.
 class Builder {
  public:
   explicit Builder(const PersonLook& look)
@@ -147,7 +147,7 @@ void add_trunk(Builder& b) {
   if (b.look().tucked_in) {
     const Vector3f belt(-0.003F, 0, 0.055F);
     b.flat_cone({0.003F, 0, 0.10F}, belt, waist, hem + 0.012F, 0.80F).flat_end = true;
-  } else {  // it hangs over the hips and the seat
+  } else {  // the shirt hangs over hips and seat
     const float width = 0.109F + 0.086F * std::sqrt(g);
     const float depth = 0.69F + 0.35F * std::max(g - 1.F, 0.F);
     const Vector3f hips(-0.016F, 0, -0.01F);

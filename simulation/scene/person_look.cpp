@@ -48,7 +48,7 @@ PersonLook random_look(std::uint64_t seed) {
   look.tucked_in = rng.below(2) == 0;
   look.skin_color = pick(kSkins, rng);
   const cv::Vec3b hair = pick(kHairs, rng);
-  // Dark skin goes with dark hair, which stands out from it.
+  // Dark skin is combined with dark hair that contrasts with it.
   look.hair_color = look.skin_color[0] < 160 ? kHairs[0] : hair;
   look.shirt_color = pick(kShirts, rng);
   const bool dark = look.shirt_color[0] + look.shirt_color[1] + look.shirt_color[2] < 3 * kDark;

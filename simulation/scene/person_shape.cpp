@@ -37,7 +37,7 @@ PersonMaterials add_materials(const PersonLook& look, MaterialLibrary& library) 
   return ids;
 }
 
-// A cylinder that a picture is wrapped round; the seam is at its back.
+// A cylinder around which a picture is wrapped, with the seam at its back.
 struct Wrap {
   Vector3f origin;
   Vector3f axis;   // up
@@ -67,7 +67,7 @@ std::array<Wrap, kPersonCharts> wraps_of(const Skeleton& skeleton) {
           trunk};
 }
 
-// Everything that says how a person's triangles are painted.
+// The data for painting a person's triangles.
 class PersonPainter {
  public:
   PersonPainter(const PersonLook& look, const PersonMaterials& ids)
@@ -120,8 +120,8 @@ class PersonPainter {
   std::array<Wrap, kPersonCharts> wraps_;
 };
 
-// Gives each triangle its material, and each corner a place on its picture; a corner between two
-// pictures, or at a seam, becomes two.
+// Gives each triangle its material and each corner its texture coordinates; a corner between two
+// pictures, or at a seam, is duplicated.
 Mesh painted(const FleshSurface& surface, const Flesh& flesh, const PersonPainter& painter) {
   using Key = std::tuple<std::uint32_t, MaterialId, std::uint8_t, bool>;
   std::map<Key, std::uint32_t> corners;

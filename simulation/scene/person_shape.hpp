@@ -23,7 +23,7 @@ inline constexpr std::size_t kPersonCharts = 6;
 /// The solid that person_skeleton() carries, in clothes; layers and charts as above.
 [[nodiscard]] Flesh person_flesh(const PersonLook& look);
 
-/// A person's body; adds what it is painted with to `materials`.
+/// A person's body; adds its materials to `materials`.
 [[nodiscard]] Body make_person(const PersonLook& look, MaterialLibrary& materials);
 
 }  // namespace stillmap

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of pictures.hpp: wood, cloth, and what lies on desks.
+// Pictures of pictures.hpp: wood, cloth, and things on desks.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -61,7 +61,7 @@ void draw_chart_window(Canvas& canvas, const cv::Rect2d& area, HashStream& rng) 
   canvas.outline(inside, 0.002, {70, 70, 74});
 }
 
-// A border between bands that wanders, along a spine or a cover.
+// A wavy border between bands, along a spine or a cover.
 void draw_title(Canvas& canvas, const cv::Rect2d& area, const Rgb& ink, HashStream& rng) {
   canvas.text(random_words(1, rng), {area.x, area.y, area.width, 0.5 * area.height}, ink);
   canvas.text(random_words(1, rng),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of pictures.hpp: what hangs on the walls.
+// Pictures of pictures.hpp: things on the walls.
 #include <cmath>
 #include <numbers>
 
@@ -56,7 +56,7 @@ void draw_plot(Canvas& canvas, const cv::Rect2d& area, HashStream& rng) {
   canvas.line(zero, {zero.x, zero.y - span.height}, 0.014 * unit, {50, 50, 50});
 }
 
-// A photograph in little: sky, mountains behind one another, water or a field.
+// A small photograph: sky, mountains behind one another, water or a field.
 void draw_landscape(Canvas& canvas, const cv::Rect2d& area, HashStream& rng) {
   const Rgb sky = pick({{176, 204, 228}, {232, 190, 150}, {150, 176, 206}}, rng);
   for (int i = 0; i < 12; ++i) {
@@ -87,7 +87,7 @@ void draw_landscape(Canvas& canvas, const cv::Rect2d& area, HashStream& rng) {
   }
 }
 
-// Writing by hand: a line that wobbles, in words.
+// Handwriting: a wavy line, in words.
 void scribble(Canvas& canvas, const cv::Rect2d& line, const Rgb& ink, HashStream& rng) {
   const double step = 0.16 * line.height;
   std::vector<cv::Point2d> stroke;

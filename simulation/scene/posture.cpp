@@ -59,14 +59,14 @@ Matrix3d bone_axes(const Vector3d& along, const Vector3d& hinge) {
   return axes;
 }
 
-// A limb's bones bent so that its end is at `target`: where the two bones point, in world axes.
+// The directions, in world axes, of a limb's two bones that put its end at `target`.
 struct JointBend {
   Vector3d upper;
   Vector3d lower;
   Vector3d hinge;
 };
 
-// `pole`: where the joint in the middle points.
+// `pole`: the direction in which the middle joint points.
 JointBend bend_to(const Vector3d& from,
                   const Vector3d& target,
                   double upper,
@@ -191,7 +191,7 @@ Vector3d hanging_palm(const Body& body, const BodyPose& pose, BodySide side, dou
   const Limb limb = arm(side);
   const std::array<Isometry3d, kJoints> joints = body.T_world_joints(pose);
   const double y = side == BodySide::kLeft ? 1.0 : -1.0;
-  // Arms hang straight down whatever the chest's lean; the elbow is never quite stretched.
+  // Arms hang straight down at any lean of the chest; the elbow is never fully stretched.
   const Vector3d flat = joints[index(limb.parent)].linear().col(0);
   const double yaw = std::atan2(flat.y(), flat.x());
   const double length = arm_length(body.skeleton());

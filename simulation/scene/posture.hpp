@@ -42,8 +42,8 @@ struct PalmGoal {
   double roll = 0;  ///< turns the palm from inwards (0) to downwards (pi / 2)
 };
 
-/// The same pose with an arm bent such that the palm's middle is there, as far as the arm reaches;
-/// the elbow points back and out.
+/// The same pose with an arm bent such that the palm's middle is at the goal, as far as the arm
+/// reaches; the elbow points back and out.
 [[nodiscard]] BodyPose with_arm(const Body& body,
                                 const BodyPose& pose,
                                 BodySide side,

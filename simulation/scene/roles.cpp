@@ -21,7 +21,7 @@ FloorPose floor_pose(const Isometry3d& T) {
   return {T.translation().head<2>(), std::atan2(T(1, 0), T(0, 0))};
 }
 
-// Somewhere on a chair, `shift` off its middle, turned against it to the left.
+// A pose on a chair, `shift` off its middle, turned to the left against it.
 FloorPose seat_on(const World& office,
                   const std::string& chair,
                   const Eigen::Vector2d& shift,
@@ -32,7 +32,7 @@ FloorPose seat_on(const World& office,
   return seat;
 }
 
-// From a seat to where one stands after getting up, or puts the feet while seated.
+// The transform from a seat to the place of the feet, while seated and after getting up.
 constexpr double kSeatToFeet_m = 0.40;
 
 // --- the chair that is pushed -------------------------------------------------------------------
@@ -239,7 +239,7 @@ Role stroller(const World& office) {
   return role;
 }
 
-// Somebody who stays seated and talks.
+// A person who stays seated and talks.
 Role talker(const FloorPose& seat, const std::array<double, 2>& hands_height_m, double liveliness) {
   const Eigen::Vector2d feet = seat.place(kSeatToFeet_m, 0.0);
   Role role{.path = FloorPath({{0.0, feet.x(), feet.y(), seat.yaw}})};

@@ -27,7 +27,7 @@ struct Play {
 /// Two people who talk at their desks.
 [[nodiscard]] Play sitting_play(const World& office);
 
-/// Three people on the move. All is fixed by time and by where the things are at first.
+/// Three people who walk. Their motion depends only on time and the initial poses of the things.
 [[nodiscard]] Play walking_play(const World& office);
 
 }  // namespace stillmap

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Those of shapes.hpp that are round: lathe and tube.
+// The round shapes of shapes.hpp: lathe and tube.
 #include <cmath>
 #include <numbers>
 
@@ -74,7 +74,7 @@ double length(const ProfilePoint& a, const ProfilePoint& b) {
   return std::hypot(a.radius - b.radius, a.z - b.z);
 }
 
-// How far stretch `i` begins from the last and to the first point of the run that has its picture.
+// A run of stretches with one picture: length before stretch `i`, whole length, greatest radius.
 struct Run {
   double below = 0, whole = 0, widest = 0;
 };
@@ -92,8 +92,7 @@ Run run_of(const std::vector<ProfilePoint>& profile, std::size_t i) {
   return run;
 }
 
-// Rings of a tube from its start to its end: where each is, how wide, and how far its normals lean
-// back.
+// The rings of a tube from start to end: position, radius, and how far the normals lean back.
 struct TubeRing {
   Vector3d center, tangent;
   double radius, lean;

@@ -54,8 +54,8 @@ FaceAxes face_axes(std::size_t face) {
   return {normal, up.cross(normal), up};
 }
 
-// Where a box's surface is cut along one axis, about its middle: symmetric, so that neighbouring
-// faces meet in the same places.
+// The cuts of a box's surface along one axis, relative to its middle: symmetric, so that
+// neighbouring faces meet at the same points.
 std::vector<double> cuts(double half, const Rounding& rounding) {
   std::vector<double> places;
   const double flat = half - rounding.radius;

@@ -27,7 +27,7 @@ using BoxSurfaces = std::array<Surface, 6>;
 struct Rounding {
   double radius = 0;   ///< metres, at most half of the box's shortest side
   int edge_steps = 1;  ///< 1: a bevel
-  int flat_steps = 1;  ///< pieces of what stays flat, so that it can be bent
+  int flat_steps = 1;  ///< pieces of the flat part, so that it can be bent
 };
 
 /// A closed box; the middle of its bottom is the origin.
@@ -57,7 +57,7 @@ struct ProfilePoint {
 /// radius 0. A picture covers one turn and all consecutive stretches with the same surface.
 [[nodiscard]] Mesh make_lathe(const std::vector<ProfilePoint>& profile, int segments);
 
-/// A round bar along a line of points, its radius going from one end's to the other's; round ends.
+/// A round bar along a line of points, with a radius for each end, and round ends.
 struct Tube {
   std::vector<Eigen::Vector3d> path;
   double start_radius = 0.01;

@@ -30,8 +30,8 @@ constexpr std::array<float, kJoints> kRadii = {0.11F,
                                                0.052F,
                                                0.04F};
 
-// How gradually the surface goes over from one bone to the next: influence falls by e for each
-// such distance that a corner is farther from a bone than from its nearest.
+// The width of the transition between bones: influence falls by e for each such distance that a
+// corner is farther from a bone than from its nearest.
 constexpr std::array<float, kJoints> kSoftness = {0.030F,
                                                   0.030F,
                                                   0.030F,
@@ -74,7 +74,7 @@ Joints rest_joints(const Skeleton& skeleton) {
   return joints;
 }
 
-// How much bigger than 1.75 m a body is, from its head's and ankle's height.
+// The scale of a body against 1.75 m, from the heights of head and ankle.
 float body_scale(const Joints& joints) {
   constexpr float kAnkleToHead = 1.47F;
   const float height =
@@ -122,8 +122,8 @@ std::size_t nearest_of(const JointWeights& distances) {
                                   distances.begin());
 }
 
-// Influence of the nearest bone and its neighbours in the skeleton; of nothing else, so that
-// legs don't pull at each other nor arms at the hips that they hang beside.
+// Only the nearest bone and its neighbours in the skeleton have influence, so that legs do not pull
+// at each other, nor arms at the hips beside them.
 JointWeights weights_of(const JointWeights& distances, float scale) {
   const std::size_t nearest = nearest_of(distances);
   JointWeights weights{};
@@ -142,7 +142,7 @@ void normalize(JointWeights& weights) {
   for (float& w : weights) w /= sum;
 }
 
-// The mesh's corners where they are equal in place, as one knot of a net.
+// A net in which all corners at one position are one knot.
 struct Net {
   std::vector<std::uint32_t> knots;                    // of each corner
   std::vector<std::uint32_t> corners;                  // one of each knot
@@ -175,7 +175,7 @@ Net net_of(const Mesh& mesh) {
   return net;
 }
 
-// Which knots hang together with `start` over such steps as `passes` allows.
+// The knots connected to `start` by steps that `passes` allows.
 template <typename Passes>
 std::vector<std::uint32_t> connected(const Net& net,
                                      std::uint32_t start,
@@ -195,7 +195,7 @@ std::vector<std::uint32_t> connected(const Net& net,
 
 using Labels = std::vector<std::size_t>;  // the nearest joint of each knot
 
-// The greatest patch of one label, of those that are asked for, in a piece of the surface.
+// The largest patch of one of the wanted labels in a piece of the surface.
 template <typename Wanted>
 std::vector<std::uint32_t> greatest_patch(const Net& net,
                                           const Labels& labels,
@@ -220,8 +220,8 @@ constexpr bool is_of_forearm(std::size_t joint) {
           joint <= static_cast<std::size_t>(Joint::kRightWrist));
 }
 
-// The knot whose label is the right one for sure: that of a hand which is a piece of its own, as it
-// is where sleeves are, even where it lies on a hip; else that of the greatest patch.
+// A knot whose label is certainly right: on the hand if it is a separate piece, as with sleeves,
+// even if it touches a hip; else in the largest patch.
 std::uint32_t root_of(const Mesh& mesh,
                       const Net& net,
                       const Labels& labels,
@@ -253,8 +253,8 @@ bool meet(std::size_t a, std::size_t b) {
          pair(Joint::kLeftHip, Joint::kRightHip);
 }
 
-// Knots that no way over neighbouring bones connects with the rest of their piece: what a hand
-// covers on a hip is nearest to the hand.
+// Knots that no path over neighbouring bones connects with the rest of their piece: the part of a
+// hip under a hand is nearest to the hand.
 std::vector<std::uint32_t> strays(const Mesh& mesh, const Net& net, const Labels& labels) {
   std::vector<bool> in_piece(labels.size(), false), reached(labels.size(), false);
   for (std::uint32_t start = 0; start < labels.size(); ++start) {
@@ -271,7 +271,7 @@ std::vector<std::uint32_t> strays(const Mesh& mesh, const Net& net, const Labels
   return found;
 }
 
-// Each knot's weights go over to the mean of its neighbours' by half.
+// Moves each knot's weights halfway to the mean of its neighbours'.
 void smooth(const Net& net, std::vector<JointWeights>& weights) {
   const std::vector<JointWeights> before = weights;
   for (std::size_t i = 0; i < weights.size(); ++i) {

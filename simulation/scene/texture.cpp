@@ -40,7 +40,7 @@ MipTexture::Level MipTexture::pack(const cv::Mat3b& picture) {
 
 namespace {
 
-// Two neighbouring texels in one direction and where between them a place lies.
+// Two neighbouring texels in one direction, and a position between them.
 struct Span {
   std::size_t first;
   std::size_t second;

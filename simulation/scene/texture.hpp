@@ -19,15 +19,15 @@ struct TexturePoint {
 };
 
 /// A picture on a rectangle with a pyramid of halved copies, so that it can be sampled without
-/// aliasing from any distance. Outside the rectangle the edge's colour goes on, or the picture
-/// starts again, as the caller likes.
+/// aliasing from any distance. Outside the rectangle the edge's colour continues, or the picture
+/// repeats, as the caller chooses.
 class MipTexture {
  public:
   /// `base` is red, green, blue; its columns and rows cover the whole rectangle.
   explicit MipTexture(const cv::Mat3b& base);
 
   /// Colour at a place, averaged over about 2^level texels of the base across; level < 0 means
-  /// magnified. Linear in place and level. `repeats`: beyond its edges the picture starts again.
+  /// magnified. Linear in place and level. `repeats`: the picture repeats beyond its edges.
   [[nodiscard]] TexelSum sample(const TexturePoint& at, float level, bool repeats = false) const;
 
   /// The sum of samples at four places at most 2^level texels from one another. The coarser of the

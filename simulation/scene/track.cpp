@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// The mean velocity of the pieces before and after a knot; of the shorter one more.
+// The mean velocity of the pieces before and after a knot; the shorter one has more weight.
 Vector3d rate_between(const Vector3d& before,
                       double h_before,
                       const Vector3d& after,

@@ -17,7 +17,7 @@ namespace stillmap {
 struct Thing {
   std::string name;        ///< unique in its world: "chair_1", "desk_2"
   std::string class_name;  ///< the COCO name if there is one, else a plain word: "box", "wall"
-  std::uint8_t id = 0;     ///< in masks: 10 to 99 for what may be moved, 0 for all else
+  std::uint8_t id = 0;     ///< in masks: 10 to 99 for movable things, 0 for others
   Mesh mesh;               ///< in the thing's own frame
   Eigen::Isometry3d T_world_thing = Eigen::Isometry3d::Identity();  ///< initial pose
 };

@@ -17,7 +17,7 @@
 namespace stillmap {
 namespace {
 
-// Each fault draws from a key of its own, so that none depends on how many numbers others take.
+// Each fault has its own random key, so that none depends on how many numbers others draw.
 enum class Fault : std::uint64_t {
   kMissPhase = 1,
   kMiss,
@@ -30,11 +30,11 @@ enum class Fault : std::uint64_t {
   kFalse,
 };
 
-// A network looks at nearly the same picture again: most faults stay for as many frames.
+// Consecutive images are nearly equal, so most faults last for this number of frames.
 constexpr std::uint32_t kSpellFrames = 5;
 
-// Every object has one chance to be overlooked in each span of as many frames. A run of misses ends
-// before its span does, so that two never join to a longer one.
+// Every object has one chance to be missed in each span of this number of frames. A run of misses
+// ends before its span does, so that two never join.
 constexpr std::uint32_t kMissSpanFrames = 11;
 constexpr int kLongestMiss = 3;
 constexpr double kMeanMiss = 2.0;  // of 1 to 3 frames
@@ -45,7 +45,7 @@ std::uint64_t fault_key(Fault fault, std::uint32_t seed, int object, std::uint32
   return mix_bits(mix_bits((std::uint64_t{seed} << 32U) | time) + what);
 }
 
-// Which spell a frame is in; spells of different objects begin at different times.
+// The number of a frame's spell; spells of different objects begin at different times.
 std::uint32_t spell_of(FrameId frame, int object) {
   return (frame.value + 3U * static_cast<std::uint32_t>(object)) / kSpellFrames;
 }
@@ -99,7 +99,7 @@ FrameDetections perfect_detections(const FrameTruth& truth) {
 struct DetectionFaults::Report {
   DetectedObject object;
   cv::Rect room;   // where the mask lies in the image
-  cv::Mat1b mask;  // 255 where the object is said to be; may be empty
+  cv::Mat1b mask;  // 255 where the object is detected; may be empty
   cv::Mat1b own;   // 255 where it truly is
 };
 
@@ -210,11 +210,11 @@ FrameDetections DetectionFaults::apply(const FrameTruth& truth) const {
     if (!reported(object) || too_hard(object, truth)) continue;
     for (Report& report : reports_of(object, truth)) reports.push_back(std::move(report));
   }
-  // As detectors do; it also hides whom an id means in truth.
+  // As detectors do; it also hides the true object of an id.
   std::ranges::stable_sort(
       reports, std::greater<>(), [](const Report& report) { return report.object.score; });
   for (std::size_t i = 0; i < reports.size(); ++i) reports[i].object.id = static_cast<int>(i) + 1;
-  // What is truly an object's own goes first: leaks take what is left.
+  // True pixels of an object have priority; leaks take the remaining pixels.
   for (const bool own : {true, false}) {
     for (const Report& report : reports) {
       if (report.mask.empty()) continue;

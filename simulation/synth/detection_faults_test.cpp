@@ -77,7 +77,7 @@ FrameTruth truth_of(std::uint32_t frame,
   return truth;
 }
 
-// Somebody who walks across the image.
+// A person who walks across the image.
 FrameTruth walker(std::uint32_t frame, cv::Size image = kImage) {
   const double x = 120.0 + frame % 400;
   return truth_of(frame, {{1, "person", {x, 240.0}, 400.0}}, image);
@@ -335,7 +335,7 @@ TEST(DetectionFaults, OfOneObjectDoNotDependOnOthers) {
   }
 }
 
-// Masks, ids and boxes are such that the reader of detections takes them, also at borders.
+// Masks, ids and boxes are accepted by the reader of detections, also at borders.
 TEST(DetectionFaults, AreWrittenAndReadBack) {
   const TemporaryFolder folder;
   DetectionFaultOptions options;

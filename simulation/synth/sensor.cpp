@@ -11,7 +11,7 @@
 namespace stillmap {
 namespace {
 
-// Every pixel's random numbers come from a key of its own: no order of evaluation matters.
+// Each pixel has its own random key: the order of evaluation does not matter.
 enum class Effect : std::uint64_t { kColor = 1, kDepth = 2, kEdge = 3, kDrift = 4 };
 
 std::uint64_t effect_key(Effect effect, std::uint32_t seed, FrameId frame) {
@@ -70,7 +70,7 @@ cv::Mat1b shadows(const cv::Mat1f& depth, const DepthSensor& sensor) {
   return shadow;
 }
 
-// What a pixel's neighbours say about the surface in it.
+// The surface at a pixel, from its neighbours.
 struct Relief {
   bool grazing;
   bool at_edge;

@@ -82,7 +82,7 @@ Stamp SyntheticSequence::stamp(FrameId id) const {
   constexpr double kStart = 1000.0;
   Stamp stamp;
   stamp.text = fmt::format("{:.6f}", kStart + time_s(id));
-  stamp.seconds = std::strtod(stamp.text.c_str(), nullptr);  // the number that a reader would get
+  stamp.seconds = std::strtod(stamp.text.c_str(), nullptr);  // the number that a reader parses
   return stamp;
 }
 

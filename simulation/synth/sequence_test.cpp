@@ -46,7 +46,7 @@ std::optional<double> depth_at(const cv::Mat1f& depth, const Eigen::Vector2d& pi
 struct Agreement {
   int agree = 0;        // within 5 mm
   int occluded = 0;     // something nearer covers the point
-  int see_through = 0;  // nothing where the point should be
+  int see_through = 0;  // no surface where the point should be
 };
 
 Agreement reproject(const SyntheticSequence& sequence, FrameId from, FrameId to) {
@@ -201,7 +201,7 @@ TEST(SyntheticSequence, SurfacesOfPeopleAndThingsLandOnTheirDepth) {
       const cv::Point at(static_cast<int>(std::lround(pixel.x())),
                          static_cast<int>(std::lround(pixel.y())));
       if (!cv::Rect(1, 1, 318, 238).contains(at)) return;
-      // Somewhere in the pixels around there must be something no farther than the corner.
+      // At least one of the surrounding pixels must be no farther than the corner.
       double nearest = 1e9, farthest = 0;
       for (int v = at.y - 1; v <= at.y + 1; ++v) {
         for (int u = at.x - 1; u <= at.x + 1; ++u) {
@@ -229,7 +229,7 @@ TEST(SyntheticSequence, SurfacesOfPeopleAndThingsLandOnTheirDepth) {
   EXPECT_LE(see_through, on_surface / 400);  // wires and leaves thinner than a pixel
 }
 
-// Where the mask has a person or a thing, the depth is within that body's own extent.
+// Where the mask has a person or a thing, the depth is within the extent of that body.
 TEST(SyntheticSequence, MasksAgreeWithDepth) {
   const SyntheticSequence sequence(walking_options());
   const World& world = sequence.world();

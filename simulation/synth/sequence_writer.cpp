@@ -34,7 +34,7 @@ void create_folder(const fs::path& folder) {
   }
 }
 
-// A sequence never mixes with what is there already.
+// A sequence is never mixed with existing files.
 void check_vacant(const fs::path& folder) {
   std::error_code failure;
   const fs::file_status status = fs::status(folder, failure);
@@ -62,14 +62,14 @@ struct Lists {
   }
 };
 
-// A frame whose images are written, and what is true about it.
+// A frame whose images are written, with its truth.
 struct WrittenFrame {
   RenderedImage image;
   FrameTruth truth;
   TruthFrame objects;
 };
 
-// Which share of each object that can move is within the image, in the order of speeds().
+// The share of each movable object that is within the image, in the order of speeds().
 std::vector<double> visible_shares(const SyntheticSequence& sequence, FrameId id) {
   const Eigen::Isometry3d T_world_camera = sequence.pose(id);
   std::vector<double> shares;
@@ -79,7 +79,7 @@ std::vector<double> visible_shares(const SyntheticSequence& sequence, FrameId id
   return shares;
 }
 
-// All that can move, in the order of speeds().
+// The movable objects, in the order of speeds().
 std::vector<TruthObject> truth_objects(const SyntheticSequence& sequence,
                                        const std::vector<int>& moved) {
   std::vector<TruthObject> objects;
@@ -119,7 +119,7 @@ WrittenFrame write_frame(const SyntheticSequence& sequence,
   return written;
 }
 
-// Gathers what is true of the whole sequence.
+// Collects the truth of the whole sequence.
 class TruthFolder {
  public:
   TruthFolder(const SyntheticSequence& sequence, const std::vector<int>& moved)
@@ -143,7 +143,7 @@ class TruthFolder {
   std::vector<TruthFrame> frames_;
 };
 
-// The folder of detections, where one is asked for.
+// The folder of detections, if requested.
 class DetectionsMaker {
  public:
   DetectionsMaker(const SyntheticSequence& sequence, const fs::path& folder, DetectionKind kind)

@@ -15,7 +15,7 @@ constexpr unsigned kAxisBits = 21;
 
 using Cell = Eigen::Vector3i;
 
-// std::floor is a call on the oldest processors of the kind; this is not.
+// std::floor is a function call on baseline x86-64; this is not.
 std::int32_t floor_to_int(float value) {
   const std::int32_t truncated = static_cast<std::int32_t>(value);
   return truncated - (static_cast<float>(truncated) > value ? 1 : 0);
@@ -50,7 +50,7 @@ class CellIndex {
     return cell_of(position / cell_size_);
   }
 
-  // Every point within a cell's size of a point in `center`, and some more.
+  // All points within a cell's size of a point in `center`, and some others.
   [[nodiscard]] std::vector<Eigen::Vector3f> around(const Cell& center) const {
     std::vector<Eigen::Vector3f> near;
     for (int dx = -1; dx <= 1; ++dx) {

@@ -20,7 +20,7 @@ struct Extent {
   int pixels = 0;
 };
 
-// Of every id at once; most pixels are those of the one before, or of none.
+// All ids in one pass; most pixels have the id of the previous one, or none.
 std::array<Extent, 256> extents(const cv::Mat1b& ids) {
   std::array<Extent, 256> found;
   for (int v = 0; v < ids.rows; ++v) {
@@ -127,7 +127,7 @@ std::vector<TruthFrameObject> frame_objects(const ObjectMask& ids,
                     static_cast<double>(extent.u1),
                     static_cast<double>(extent.v1)};
     }
-    extent.pixels = 0;  // has been told
+    extent.pixels = 0;  // already counted
   }
   for (const Extent& extent : found) STILLMAP_CHECK(extent.pixels == 0);
   return objects;

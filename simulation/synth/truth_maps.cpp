@@ -29,7 +29,7 @@ void TruthMaps::add(const ColorImage& color,
   const Eigen::Vector3f origin = T_world_camera.translation().cast<float>();
   const float min_depth = static_cast<float>(options_.min_depth_m);
   const float max_depth = static_cast<float>(options_.max_depth_m);
-  // Frame by frame other pixels, so that a camera that stands still sees all of them too.
+  // The sampled pixels change from frame to frame, so that a still camera covers all of them, too.
   const int step = options_.step_px;
   const int first_u = frames_ % step;
   const int first_v = frames_ / step % step;

@@ -118,7 +118,7 @@ TEST(TruthMaps, StaticPointsLieOnWhatNeverMoves) {
 }
 
 TEST(TruthMaps, StaticSurfaceIsCoveredWhereItWasSeen) {
-  // Behind the walker, too, once it has gone on: the wall ahead where it was at first.
+  // Also behind the walker once it has left: the wall at its first position.
   const PointCloud cloud = maps_of_walk().static_map();
   for (const Eigen::Vector3f& place :
        {Eigen::Vector3f(-0.8F, -0.1F, 2.F), Eigen::Vector3f(0.F, 0.F, 2.F)}) {

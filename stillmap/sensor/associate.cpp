@@ -56,8 +56,8 @@ std::vector<Node> merge(std::span<const double> a, std::span<const double> b) {
   return nodes;
 }
 
-// The greedy choice over neighbours only. That is enough: between the two stamps of the closest
-// pair there is no other unused one, or that one would make a closer pair.
+// Chooses greedily among neighbours only. That is enough: an unused stamp between the two stamps of
+// the closest pair would make a closer pair.
 class GreedyPairing {
  public:
   GreedyPairing(std::vector<Node> nodes, double max_difference_s)

@@ -16,7 +16,7 @@ namespace {
 
 using Pairs = std::vector<std::pair<std::size_t, std::size_t>>;
 
-// The rule word by word: all pairs, sorted, taken while both are free.
+// The rule to the letter: all pairs, sorted, taken while both stamps are free.
 Pairs brute_force(const std::vector<double>& a, const std::vector<double>& b, double limit) {
   std::vector<std::tuple<double, std::size_t, std::size_t>> all;
   for (std::size_t i = 0; i < a.size(); ++i) {

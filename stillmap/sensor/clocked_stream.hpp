@@ -11,23 +11,23 @@
 
 namespace stillmap {
 
-/// Plays another stream as a camera would give it: each frame arrives at its time, and only the
-/// newest waits. Frames that were not fetched before the next one arrived are dropped.
+/// Plays another stream as a camera would: each frame arrives at its time, and only the newest
+/// waits. A frame that is not fetched before the next one arrives is dropped.
 class ClockedStream : public FrameStream {
  public:
   /// Time passes `speed` times as fast as the stamps say; it begins with the first call of next().
-  /// `stream` and `clock` outlive this. The stream is read ahead on a thread of its own, frames
-  /// that are dropped included, as a camera's driver does; `probe` is called there.
+  /// `stream` and `clock` outlive the object. The stream is read ahead on a thread of its own,
+  /// frames that are dropped included, as a camera's driver does; `probe` is called there.
   ClockedStream(FrameStream& stream, double speed, Clock& clock, StageProbe probe = {});
 
   [[nodiscard]] const CameraModel& camera() const override { return stream_.camera(); }
   [[nodiscard]] std::optional<std::size_t> size() const override { return stream_.size(); }
 
-  /// The newest frame that has not been given; waits until one arrives. Nothing at the end. Throws
-  /// what reading throws.
+  /// The newest frame that was not returned yet; waits until one arrives. Nothing at the end.
+  /// Throws what reading throws.
   [[nodiscard]] std::optional<StreamedFrame> next() override;
 
-  /// When the frame arrived that next() gave last, in seconds of the clock.
+  /// The arrival of the frame that next() returned last, in seconds of the clock.
   [[nodiscard]] double arrival_s() const { return arrival_s_; }
 
   /// The number of frames that were not fetched in time.

@@ -20,7 +20,7 @@ struct DamagedFrame {
   std::string damage;  ///< one line that says which image is damaged, and how
 };
 
-/// A frame, never null, or the reason why there is none.
+/// A frame, never null, or the reason why it could not be read.
 using StreamedFrame = std::variant<FramePtr, DamagedFrame>;
 
 /// The id of a frame, damaged or not.
@@ -36,7 +36,7 @@ using StreamedFrame = std::variant<FramePtr, DamagedFrame>;
 }
 
 /// The sensor as the rest of stillmap sees it: one RGB-D frame after another, of one camera. A
-/// camera's driver, a recording and a folder of images implement it; nothing above knows which of
+/// camera's driver, a recording and a folder of images implement it; no other module knows which of
 /// them gives the frames.
 ///
 /// Every frame has colour, grey and depth images of the camera's size, depth in metres with 0 where
@@ -52,8 +52,8 @@ class FrameStream {
   /// The camera that takes the frames. May be called on any thread.
   [[nodiscard]] virtual const CameraModel& camera() const = 0;
 
-  /// The number of frames from the first to the end, damaged ones included; nothing where that is
-  /// not known. May be called on any thread. For progress, and for the share of damaged frames.
+  /// The number of frames from the first to the end, damaged ones included; nothing where it is not
+  /// known. May be called on any thread. For progress, and for the share of damaged frames.
   [[nodiscard]] virtual std::optional<std::size_t> size() const { return std::nullopt; }
 
   /// The next frame; waits for one that has not been taken yet. Nothing at the end. Called by one

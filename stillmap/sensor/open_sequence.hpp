@@ -11,8 +11,8 @@
 namespace stillmap {
 
 /// The frames of a recorded sequence: a folder in the layout of the TUM RGB-D benchmark. Without
-/// `camera` it is the folder's camera.yaml, or the one that the folder's name tells. Throws Error,
-/// with file and line, for a folder that is no such sequence or whose camera is not known.
+/// `camera`, the camera is found as by TumSequence::open(). Throws Error, with file and line, for a
+/// folder that is not such a sequence or whose camera is not known.
 [[nodiscard]] std::unique_ptr<FrameStream> open_sequence(
     const std::filesystem::path& folder, const std::optional<CameraModel>& camera = std::nullopt);
 

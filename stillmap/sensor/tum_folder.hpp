@@ -7,11 +7,11 @@
 
 namespace stillmap {
 
-/// Plays a sequence in the layout of the TUM RGB-D benchmark, or a part of it, as fast as it is
-/// asked. Ids of frames are their places in the whole sequence.
+/// Plays a sequence in the layout of the TUM RGB-D benchmark, or a part of it, as fast as next() is
+/// called. The id of a frame is its frame number in the whole sequence.
 class TumFolder : public FrameStream {
  public:
-  /// Throws Error for a selection that begins behind the last frame. An end behind it is the last
+  /// Throws Error for a selection that begins after the last frame. A later end means the last
   /// frame.
   explicit TumFolder(TumSequence sequence, const FrameSelection& selection = {});
 

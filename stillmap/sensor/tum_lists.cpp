@@ -21,7 +21,7 @@ struct ListedImage {
   fs::path file;
 };
 
-// A sequence may come from anyone: its lists must not reach files outside of it.
+// A sequence may come from an untrusted source: its lists must not reach files outside its folder.
 fs::path listed_file(const fs::path& folder,
                      const TextTable& table,
                      const TextRow& row,
@@ -65,7 +65,7 @@ std::vector<ListedImage> read_list(const fs::path& folder, std::string_view name
   return images;
 }
 
-// rgb.txt's text of a stamp where it has the stamp: other files find a frame by that text.
+// The stamp with the text of rgb.txt, if listed there: other files refer to a frame by that text.
 Stamp stamp_as_listed(const std::vector<ListedImage>& images, const Stamp& stamp) {
   const auto seconds = [](const ListedImage& image) { return image.stamp.seconds; };
   const auto found = std::ranges::lower_bound(images, stamp.seconds, {}, seconds);

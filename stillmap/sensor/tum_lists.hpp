@@ -8,8 +8,7 @@
 
 namespace stillmap {
 
-/// The pairs of a sequence's folder, in the order of their stamps; see TumSequence, of which this
-/// is the part that reads lists.
+/// The pairs of a sequence's folder, in the order of their stamps. Reads the lists for TumSequence.
 [[nodiscard]] std::vector<SequenceEntry> read_sequence_entries(const std::filesystem::path& folder);
 
 }  // namespace stillmap

@@ -24,7 +24,7 @@ std::string folder_name(const fs::path& folder) {
   return (error ? folder : full).filename().string();
 }
 
-// The letters and digits between other characters, in lower case.
+// The runs of letters and digits in a name, in lower case.
 std::vector<std::string> words_of(const std::string& name) {
   std::vector<std::string> words(1);
   for (const char c : name) {

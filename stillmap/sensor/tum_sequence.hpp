@@ -14,17 +14,17 @@
 
 namespace stillmap {
 
-/// Nothing says which camera took a sequence.
+/// The error of a sequence whose camera is not known.
 class UnknownCamera : public Error {
  public:
   using Error::Error;
 };
 
 struct SequenceOptions {
-  std::optional<CameraModel> camera;  ///< instead of the one that the sequence says or suggests
+  std::optional<CameraModel> camera;  ///< instead of the one that the sequence tells
 };
 
-/// A colour image and the depth image that goes with it.
+/// A colour image and the depth image paired with it.
 struct SequenceEntry {
   Stamp stamp;  ///< of the colour image, with the text of rgb.txt
   double depth_stamp_s = 0.0;
@@ -39,10 +39,10 @@ struct SequenceEntry {
 class TumSequence {
  public:
   /// Reads the lists, no image. The camera is that of the options, else the folder's camera.yaml,
-  /// else the one that the folder's name tells (freiburg1, fr1, freiburg2, fr2, freiburg3, fr3,
-  /// bonn as words of it), else that in truth/objects.json. Throws Error, with file and line, for
+  /// else the one that a word of the folder's name tells (freiburg1, fr1, freiburg2, fr2,
+  /// freiburg3, fr3, bonn), else that in truth/objects.json. Throws Error, with file and line, for
   /// a missing folder or list, an empty list, stamps that do not increase, a file outside the
-  /// folder, no pair at all; UnknownCamera for no known camera.
+  /// folder, or no pair at all; UnknownCamera when the camera is not known.
   [[nodiscard]] static TumSequence open(const std::filesystem::path& folder,
                                         const SequenceOptions& options = {});
 
@@ -57,7 +57,7 @@ class TumSequence {
   [[nodiscard]] const std::vector<SequenceEntry>& entries() const { return entries_; }
 
   /// Decodes the images of a pair. May run in any number of threads. Throws Error, naming the file,
-  /// when one is missing, broken, of the wrong kind or not of the camera's size.
+  /// when an image is missing, broken, of the wrong kind or not of the camera's size.
   [[nodiscard]] FramePtr read(FrameId id) const;
 
   /// groundtruth.txt, where the folder has it.

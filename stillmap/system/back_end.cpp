@@ -55,7 +55,7 @@ Eigen::Isometry3d BackEnd::T_world_last() const {
                                  : T_world_frame(session_, session_.frames.back());
 }
 
-// Only one key frame's mapping is under way at a time, so that none is when the map is moved.
+// At most one key frame is mapped at a time, so that no mapping is under way when the map is moved.
 void BackEnd::apply_finished_work(std::int64_t frame_number) {
   const Eigen::Isometry3d T_before = T_world_last();
   const std::size_t loops_before = closed_loops_.size();
@@ -120,7 +120,7 @@ void BackEnd::finish() {
   loops_.finish(session_.map, main_submap(session_, first_frame_));
 }
 
-// Where no frame of this run was tracked, the submap of the session that it goes on from.
+// If this run tracked no frame, the result is the submap of the session that it continues.
 SubmapId BackEnd::result_submap() const {
   const SubmapId submap = main_submap(session_, first_frame_);
   return submap.valid() ? submap : main_submap(session_);

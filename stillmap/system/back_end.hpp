@@ -18,19 +18,19 @@
 namespace stillmap {
 
 /// Owns the map and everything that changes it after frames are tracked: mapping, loops, the views
-/// of the dense map. Only the system's thread calls it. Results are applied at frames fixed when
-/// their jobs were begun.
+/// of the dense map. Only the system's thread calls it. The frame at which a result is applied is
+/// fixed when its job begins.
 class BackEnd {
  public:
-  /// The workers must be joined before this is destroyed.
+  /// The workers must be joined before this object is destroyed.
   BackEnd(const SystemConfig& config,
           const CameraModel& camera,
           const MeasurementModel& measure,
           Workers& workers,
           const StageProbe& probe);
 
-  /// Goes on from a session. Before the first frame. Throws Error when its views lack the free
-  /// space that the settings ask for.
+  /// Continues a session. Only before the first frame. Throws Error when the session's views lack
+  /// the free space that the settings ask for.
   void load(Session session);
 
   [[nodiscard]] const Map& map() const { return session_.map; }
@@ -40,21 +40,21 @@ class BackEnd {
   /// The camera's pose in a recorded frame, as the map has it now.
   [[nodiscard]] Eigen::Isometry3d T_world_camera(std::size_t record) const;
 
-  /// Applies all results that are due: map updates, loops that their key frames close, adjustments,
-  /// views.
+  /// Applies all results that are due: map updates, the loops that their key frames close,
+  /// adjustments, and views.
   void apply_finished_work(std::int64_t frame_number);
 
-  /// Counts how often landmarks were expected in a frame, and found there.
+  /// Counts how often each landmark was expected in a frame, and how often it was found.
   void count_landmarks(const TrackedFrame& tracked);
-  /// Makes a key frame of a tracked frame; mapping around it begins.
+  /// Makes a key frame of a tracked frame and begins mapping around it.
   [[nodiscard]] KeyframeId insert_keyframe(const RgbdFrame& frame,
                                            const TrackedFrame& tracked,
                                            std::int64_t frame_number);
-  /// Keeps a tracked frame's pose; gives its record. `tracked.reference` is a key frame.
+  /// Keeps a tracked frame's pose; returns its record. `tracked.reference` is a key frame.
   std::size_t record(const RgbdFrame& frame, const TrackedFrame& tracked);
-  /// A recorded frame has become a key frame after all.
+  /// Tells the back end that a recorded frame has become a key frame later.
   void refer_to_keyframe(std::size_t record, KeyframeId keyframe);
-  /// Begins a recorded frame's view of the dense map, if its turn has come.
+  /// Begins a recorded frame's view of the dense map if a view is due at this frame.
   void add_view(const DenseStage::Candidate& candidate, std::int64_t frame_number) {
     dense_.add(candidate, frame_number);
   }
@@ -63,16 +63,16 @@ class BackEnd {
 
   /// Waits for all pending work and adjusts the submap that has most of this run's frames.
   void finish();
-  /// Trajectory, key frames and map, under the poses as they are.
+  /// Trajectory, key frames and map under the current poses.
   [[nodiscard]] RunResult result(std::size_t threads) const;
-  /// The map as finish() and result() would give it now. Changes nothing.
+  /// The map that finish() and result() would give now. Changes nothing.
   [[nodiscard]] PointCloud map_snapshot(std::size_t threads) const;
   /// The map with the frames of the result's trajectory at other poses, in its order; frames
   /// without a pose add nothing to it.
   [[nodiscard]] PointCloud map_with_poses(
       std::span<const std::optional<Eigen::Isometry3d>> T_world_frames, std::size_t threads) const;
 
-  /// All that can be saved. Nothing else may be asked afterwards.
+  /// The session to be saved. No other member may be called afterwards.
   [[nodiscard]] Session take_session(double readout_s);
 
  private:

@@ -10,8 +10,8 @@ namespace stillmap {
 
 namespace {
 
-// Nobody asks for a view before the end: only that frames do not pile up must not be waited for
-// long.
+// Views are needed only at the end of a run. The lag is limited so that pending frames do not pile
+// up.
 constexpr std::int64_t kLagFrames = 30;
 
 }  // namespace

@@ -12,7 +12,7 @@
 
 namespace stillmap {
 
-/// Makes the dense map's views, of key frames and of some frames between them, and the map of them.
+/// Makes the views of key frames and of some frames between them, and the dense map of these views.
 class DenseStage {
  public:
   /// `config` is resolved. Views reach the session some frames after they were begun.
@@ -21,20 +21,20 @@ class DenseStage {
   /// A stage with the same pending views, whose own work runs inline.
   [[nodiscard]] DenseStage inline_copy() const;
 
-  /// A recorded frame with masks of its own.
+  /// A recorded frame whose masks are of that frame, not carried forward.
   struct Candidate {
     const FramePtr& frame;
     const FrameDynamics& dynamics;
-    std::size_t record;  ///< its place in the session's frames
+    std::size_t record;  ///< its index in the session's frames
     bool is_keyframe;
   };
-  /// Begins its view if its turn has come. To be called in the order of the records.
+  /// Begins the candidate's view if one is due. To be called in the order of the records.
   void add(const Candidate& candidate, std::int64_t frame_number);
 
-  /// Adds the views that are due to the session, as far as they tell something new.
+  /// Adds the views that are due to the session, except those that show nothing new.
   void collect_due(Session& session, std::int64_t frame_number);
 
-  /// The map of the posed views, on that many threads; the same with any number.
+  /// The map of the posed views; the result is the same for any number of threads.
   [[nodiscard]] PointCloud map_of(std::span<const PosedView> views, std::size_t threads) const {
     return static_map(views, camera_, config_, threads);
   }
@@ -49,7 +49,7 @@ class DenseStage {
   CloudConfig config_;
   CameraModel camera_;
   cv::Mat2f rays_;
-  std::optional<std::int64_t> last_;  // record of the last view's frame, at first that before all
+  std::optional<std::int64_t> last_;  // record of the last view's frame
   JobLedger<ViewRecord> jobs_;
 };
 

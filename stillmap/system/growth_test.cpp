@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What grows where nothing new is seen: a rendered room gone through there and back.
+// Growth of the map where the camera sees nothing new: it goes through a rendered room and back.
 #include <algorithm>
 #include <vector>
 
@@ -32,7 +32,7 @@ std::uint32_t at_step(std::uint32_t step) {
   return at < kFrames ? at : 2 * (kFrames - 1) - at;
 }
 
-/// The surfaces that the camera has seen, where they are from the first camera.
+/// The surfaces that the camera has seen, in the coordinates of the first camera.
 MapTruth truth() {
   const cv::Mat2f rays = pixel_rays(room().camera());
   PointCloud surface;
@@ -92,7 +92,7 @@ Outcome go(std::uint32_t ways, const SystemConfig& config) {
 SystemConfig settings() {
   SystemConfig config;
   config.dynamics.mode = "full";
-  // A short sequence: places are known sooner than by default.
+  // The sequence is short, so places must count as known sooner than by default.
   config.cloud.views.enough = 8;
   config.keyframe.known_observers = 8;
   config.keyframe.max_known_share = 0.55;
@@ -115,7 +115,7 @@ TEST(Growth, ViewsStayAsManyWhereNothingNewIsSeen) {
   all.cloud.views.enough = 0;
   const Outcome with_all = go(10, all);
   EXPECT_GT(with_all.views, early().views + 60);
-  // The map is as good without the others.
+  // The map is as good without the additional views.
   EXPECT_GT(late().map.sa, with_all.map.sa - 0.002);
   EXPECT_LT(*late().map.accuracy_m, 1.05 * *with_all.map.accuracy_m);
 }

@@ -41,7 +41,7 @@ TrackedFrame without_excluded_features(const TrackedFrame& tracked,
     keep[i] = excluded.covers(px.y(), px.x()) ? 0 : 1;
   }
   std::vector<LandmarkId> landmarks;
-  std::set<LandmarkId> seen;  // two may have been merged since
+  std::set<LandmarkId> seen;  // two landmarks may have been merged since
   result.inliers = 0;
   for (std::size_t i = 0; i < keep.size(); ++i) {
     if (keep[i] == 0) continue;

@@ -12,7 +12,7 @@
 
 namespace stillmap {
 
-/// Tracked frames whose own objects are still being looked for.
+/// Tracked frames in which the network is still looking for objects.
 class LateObjects {
  public:
   struct Awaiting {
@@ -21,11 +21,11 @@ class LateObjects {
     std::size_t record;  ///< the frame's place in the session's frames
   };
 
-  /// In the order of the frames. The oldest is given up when too many wait.
+  /// Frames come in order. When too many wait, the oldest is dropped.
   void await(Awaiting awaiting);
 
-  /// The frame whose objects have come; those before it are given up. Nothing when it does not
-  /// wait.
+  /// Takes the frame whose objects have arrived and drops those before it. Nothing when the frame
+  /// does not wait.
   [[nodiscard]] std::optional<Awaiting> take(FrameId frame);
 
  private:

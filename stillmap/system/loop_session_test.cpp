@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Once round a rendered office: loops, worlds, and sessions that are saved, gone on from and
+// One round through a rendered office: loops, submaps, and sessions that are saved, continued and
 // merged.
 #include <atomic>
 #include <chrono>
@@ -127,7 +127,7 @@ TEST(SavedSession, IsTrackedAgainstWithOtherFrames) {
     const FrameResult tracked = system.process(office().frame(k));
     ASSERT_TRUE(has_pose(tracked)) << k;
     EXPECT_EQ(tracked.status == TrackingStatus::kRelocalized, k == 41) << k;
-    // Where the saved session has the frame before, and the true motion since; nothing is aligned.
+    // The previous pose, of the saved session, and the true motion since; nothing is aligned.
     const Eigen::Isometry3d T_before_this = office().pose(k - 1).inverse() * office().pose(k);
     const Eigen::Isometry3d expected =
         before.result.trajectory[k / 2].T_world_camera * T_before_this;
@@ -174,7 +174,7 @@ TEST(MergedSessions, AreOneRoom) {
   const SubmapId world = main_submap(merged->session);
   const Trajectory older = trajectory_in(merged->session, world, 0);
   ASSERT_EQ(older.size(), 180U + 130U);
-  // Each half has its own poses of the frames that both have; together they are one trajectory.
+  // Both halves have poses of the frames that they share; together they form one trajectory.
   Trajectory all(older.begin(), older.begin() + 180);
   for (const StampedPose& pose : trajectory_in(merged->session, world, 180)) {
     if (pose.stamp.seconds > all.back().stamp.seconds) all.push_back(pose);
@@ -188,7 +188,7 @@ TEST(MergedSessions, OfPlacesThatHaveNothingInCommonAreNone) {
   EXPECT_FALSE(merge_sessions(first.session, second.session, "second"));
 }
 
-// Covered for long, the camera goes on where it has not been: in a world of its own.
+// After the camera was covered for long, it continues at an unknown place, in a new submap.
 TEST(Worlds, AreJoinedWhenAKnownPlaceIsSeenAgain) {
   System system(settings(), office().camera(), {.threads = 2});
   process(system, 0, 120);
@@ -210,7 +210,7 @@ TEST(Worlds, StayApartWithoutOne) {
   process(system, 300, 360);
   const RunResult result = system.finish();
   EXPECT_EQ(result.frames_elsewhere, 30U);
-  EXPECT_EQ(result.trajectory.size(), 60U);  // of the world that has most frames
+  EXPECT_EQ(result.trajectory.size(), 60U);  // of the submap with most frames
   EXPECT_TRUE(result.loops.empty());
   EXPECT_EQ(system.map().submaps().size(), 2U);
 }

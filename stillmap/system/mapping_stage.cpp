@@ -32,7 +32,7 @@ KeyframeId MappingStage::insert(Map& map,
     map.refresh(landmarks[i]);
   }
   create_landmarks_from_depth(map, id, camera_, measure_, config_.creation);
-  (void)map.take_changes();  // the owner knows them; only windows hand changes on
+  (void)map.take_changes();  // the owner knows them; only changes of windows are passed on
 
   std::vector<KeyframeId> core = mapping_core(map, id, config_);
   auto window = std::make_shared<Map>(map.window(core));

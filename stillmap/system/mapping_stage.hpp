@@ -14,7 +14,7 @@
 
 namespace stillmap {
 
-/// Enters key frames into the map and maps what is around them, on a window of the map.
+/// Enters key frames into the map and maps their surroundings, on a window of the map.
 class MappingStage {
  public:
   MappingStage(const MappingConfig& config,
@@ -36,7 +36,7 @@ class MappingStage {
   [[nodiscard]] std::vector<MapUpdate> collect_due(std::int64_t frame_number) {
     return jobs_.collect_due(frame_number);
   }
-  /// No window of the map is being worked on.
+  /// Whether no window of the map is being worked on.
   [[nodiscard]] bool idle() const { return jobs_.empty(); }
 
  private:

@@ -9,7 +9,7 @@
 
 namespace stillmap {
 
-/// Sees what a System does: a log, a progress bar, a viewer, a node of another framework.
+/// Observes a System: as a log, a progress bar, a viewer, a node of another framework.
 ///
 /// Every call is made on the thread that calls the System, with const values that the observer may
 /// copy. An observer must not call the System that it observes. Exceptions reach the System's

@@ -8,13 +8,13 @@
 
 namespace stillmap {
 
-/// A frame with the objects that are known of it, and all that can be computed from the two without
-/// any other frame.
+/// A frame with its known objects, and everything that can be computed from both without any other
+/// frame.
 struct PreparedFrame {
   FramePtr frame;
   FrameObjects objects;
   ImageCorners corners;
-  MeasuredObjects measured;  ///< of `objects`; empty when nothing is done about what moves
+  MeasuredObjects measured;  ///< of `objects`; empty when the mode is `off`
   double corners_ms = 0, objects_ms = 0;
 };
 

@@ -17,23 +17,22 @@
 
 namespace stillmap {
 
-/// Whose objects a frame comes with.
+/// The frame from which a frame's objects come.
 enum class MaskOrigin : std::uint8_t {
-  kOwn,      ///< those found in it; also where nothing looks for objects
-  kAwaited,  ///< carried forward from earlier frames; its own are being looked for
-  kCarried,  ///< carried forward; nobody looks for its own
+  kOwn,      ///< found in this frame; also in a run without a network
+  kAwaited,  ///< carried forward from earlier frames while the network works on this one
+  kCarried,  ///< carried forward; the network does not work on this frame
 };
 
 /// A feature of a frame and what became of it.
 struct FeatureMark {
-  Eigen::Vector2f raw_px;  ///< where the image, distortion included, has it
+  Eigen::Vector2f raw_px;                            ///< position in the image, distortion included
   FeatureVerdict verdict = FeatureVerdict::kStable;  ///< of the filter
   bool tracked = false;                              ///< an inlier of the pose
 };
 
-/// All that the system tells of one frame. Positions and velocities are in the frame of
-/// `T_world_camera`. Images are of the frame's size, or empty where nothing is done about what
-/// moves.
+/// The result for one frame. Positions and velocities are in the world frame of `T_world_camera`.
+/// Images have the frame's size, or are empty where the mode ignores motion.
 struct FrameResult {
   FrameId id;                                     ///< of the frame
   Stamp stamp;                                    ///< of the frame
@@ -43,9 +42,9 @@ struct FrameResult {
   int tracked_features = 0;                                          ///< inliers of the pose
 
   std::vector<FeatureMark> features;  ///< off the masks
-  std::vector<ObjectState> objects;   ///< those that were given or filled in
+  std::vector<ObjectState> objects;   ///< given or filled in
   ObjectMask object_mask;             ///< pixels of all of them: i + 1 is objects[i]
-  ObjectMask network_mask;            ///< pixels of dynamic objects, as the network has them
+  ObjectMask network_mask;            ///< pixels of dynamic objects, by the network
   ObjectMask extended_mask;           ///< the same after the extension by depth
   Mask depth_jumps;                   ///< pixels whose depth has changed suddenly
   Mask excluded;  ///< pixels that no feature may have: masks, jumps and a margin
@@ -67,13 +66,13 @@ struct ClosedLoop {
   Stamp later;    ///< of the return
 };
 
-/// All that a finished run knows, under final poses.
+/// The results of a finished run, under final poses.
 struct RunResult {
-  /// The run's tracked frames in the submap that has most of them. Other frames were tracked after
-  /// a loss in a submap of their own, which no known place has joined to this one.
+  /// The run's tracked frames in the submap that has most of them. The other frames were tracked,
+  /// after a loss, in other submaps that no known place has joined to this one.
   Trajectory trajectory;
   std::size_t frames_elsewhere = 0;  ///< tracked, but in another submap
-  Trajectory keyframes;              ///< of that submap, also those of a session that it continues
+  Trajectory keyframes;              ///< of that submap, including those of a continued session
   PointCloud map;                    ///< of that submap
   std::vector<ClosedLoop> loops;     ///< closed in this run
   bool lost_at_end = false;          ///< the last frame has no pose

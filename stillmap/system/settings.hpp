@@ -20,9 +20,9 @@ class Settings {
  public:
   /// The defaults.
   Settings();
-  /// From the typed settings of the library's own code.
+  /// From the typed settings that the library's code uses.
   Settings(const SystemConfig& config);  // NOLINT(google-explicit-constructor): the same values
-  /// Copies share nothing.
+  /// Copies are independent.
   /// @{
   Settings(const Settings& other);
   Settings& operator=(const Settings& other);
@@ -40,7 +40,7 @@ class Settings {
   /// All values as YAML, which load() reads back to the same bits.
   [[nodiscard]] std::string yaml() const;
 
-  /// The typed settings (session/system_config.hpp), for the library's own code.
+  /// The typed settings (session/system_config.hpp), for the library's code.
   [[nodiscard]] const SystemConfig& config() const { return *config_; }
 
  private:

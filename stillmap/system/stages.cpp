@@ -15,7 +15,7 @@ const SystemConfig& checked(const SystemConfig& config) {
   return config;
 }
 
-// From the odometry frame to that of the frame's pose.
+// From the odometry frame to the world frame of the frame's pose.
 void move_to_world(std::vector<ObjectState>& objects, const Eigen::Isometry3d& T_world_odometry) {
   for (ObjectState& object : objects) {
     Motion& motion = object.motion;
@@ -24,7 +24,7 @@ void move_to_world(std::vector<ObjectState>& objects, const Eigen::Isometry3d& T
   }
 }
 
-// Features that are more likely to move than not make no landmarks.
+// Removes new features that are more likely to move than not: they must not become landmarks.
 TrackedFrame without_doubted_newcomers(TrackedFrame tracked, const CameraModel& camera) {
   const Features& features = *tracked.features;
   if (features.trust.empty()) return tracked;
@@ -40,7 +40,7 @@ TrackedFrame without_doubted_newcomers(TrackedFrame tracked, const CameraModel& 
   return tracked;
 }
 
-// The marks of the features, the kept and the dropped ones.
+// The marks of the kept and the dropped features.
 std::vector<FeatureMark> marks_of(const TrackedFrame& tracked, const FilteredFeatures& features) {
   std::vector<FeatureMark> marks;
   marks.reserve(tracked.landmarks.size() + features.dropped.size());
@@ -101,7 +101,7 @@ std::optional<Eigen::Isometry3d> System::Stages::expected_pose(const RgbdFrame& 
   return expected;
 }
 
-// At the first frames, and when no known place has been seen for long.
+// True at the first frames, and when tracking has been lost for long.
 bool System::Stages::needs_own_objects() const {
   if (localize_only) return false;
   const bool long_lost = lost_frames >= config.relocalization.new_world_after_frames;

@@ -20,15 +20,15 @@
 
 namespace stillmap {
 
-/// The stages of a System and the state between frames. System::process() says in which order they
-/// run; what each does to the state is here.
+/// The stages of a System and the state between frames. System::process() determines their order;
+/// this struct, what each stage does to the state.
 struct System::Stages {
   Stages(const SystemConfig& config, const CameraModel& camera, const SystemOptions& options);
   ~Stages() { workers.join(); }
   Stages(const Stages&) = delete;
   Stages& operator=(const Stages&) = delete;
 
-  /// A tracked frame with all that is to be remembered of it.
+  /// A tracked frame with everything that is to be remembered of it.
   struct Outcome {
     const FramePtr& frame;
     const FrameDynamics& dynamics;
@@ -40,17 +40,17 @@ struct System::Stages {
 
   [[nodiscard]] PreparedFrame prepare(FramePtr frame, FrameObjects objects) const;
   void apply_finished_work();
-  /// Where the camera should be, in the odometry frame; nothing when it is lost or has not begun.
+  /// The predicted pose in the odometry frame; nothing while lost and before the first frame.
   [[nodiscard]] std::optional<Eigen::Isometry3d> expected_pose(const RgbdFrame& frame) const;
-  /// The frame's pose by its features and, where these are too few, by those on dynamic objects
-  /// that are not known to move.
+  /// The frame's pose by its features and, where these are too few, by doubted ones on dynamic
+  /// objects.
   [[nodiscard]] TrackedFrame track(const PreparedFrame& prepared,
                                    Features features,
                                    const FrameDynamics& judged,
                                    MaskOrigin origin);
-  /// Makes a key frame of the frame where the rules want one; it is its own reference then.
+  /// Makes a key frame of the frame where the policy wants one; it then is its own reference.
   bool insert_if_keyframe(const RgbdFrame& frame, TrackedFrame& tracked, MaskOrigin origin);
-  /// Records the frame and lets dynamics, dense map and late objects know it.
+  /// Records the frame and passes it to dynamics, dense map and late objects.
   [[nodiscard]] FrameResult remember(const Outcome& outcome);
   void notify(const RgbdFrame& frame, const FrameResult& result);
   void take_objects(FrameObjects objects);
@@ -72,12 +72,12 @@ struct System::Stages {
   BackEnd back_end;
   LateObjects late_objects;
 
-  std::int64_t frame_number = 0;  // of those processed
+  std::int64_t frame_number = 0;  // of processed frames
   KeyframeAge since_keyframe;
   int lost_frames = 0;  // in a row
 
  private:
-  [[nodiscard]] bool may_begin_submap(const Features& features) const;  // by their number
+  [[nodiscard]] bool may_begin_submap(const Features& features) const;  // decides by their number
   [[nodiscard]] std::optional<Features> with_doubted(const PreparedFrame& prepared,
                                                      const Features& features,
                                                      const FrameDynamics& judged) const;

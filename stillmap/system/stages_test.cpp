@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What each stage of the dynamics gives: without it, the same frames give a worse trajectory. Each
-// meets the fault that it is there for, and no other stage helps.
+// The effect of each stage of the dynamics: without it, the same frames give a worse trajectory.
+// Each is tested on the fault that it is made for, against which no other stage helps.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -28,9 +28,9 @@ namespace stillmap {
 namespace {
 
 constexpr std::uint32_t kFrames = 60;
-constexpr std::uint32_t kEnters = 10;  // when the curtain begins to come in
+constexpr std::uint32_t kEnters = 10;  // frame in which the curtain appears
 constexpr int kCurtainEnd = 150;       // the columns left of it are never covered
-constexpr int kFrayedBegin = 170;      // where depth begins to be wrong
+constexpr int kFrayedBegin = 170;      // column from which depth is wrong
 constexpr float kCurtain_m = 1.0F;     // nearer than anything in the room
 
 // The empty room as a hand-held camera sees it.
@@ -45,11 +45,11 @@ int curtain_begin(std::uint32_t k) {
   return std::clamp(320 - columns, kCurtainEnd, 320);
 }
 
-/// What the frames show besides the room.
+/// The disturbance that the frames show in front of the room.
 enum class Disturbance {
   kNone,
-  kCurtain,  ///< it covers most of the room and goes up and down: who takes it for the room does so
-  kFrayed,   ///< half of the room seems nearer than it is, another way in each pixel
+  kCurtain,  ///< covers most of the room and moves up and down, which can mislead tracking
+  kFrayed,   ///< half of the room seems nearer than it is, each pixel differently
 };
 
 void draw_curtain(RgbdFrame& frame) {
@@ -83,7 +83,7 @@ FramePtr disturbed(const RgbdFrame& room, Disturbance disturbance) {
   return std::make_shared<const RgbdFrame>(std::move(frame));
 }
 
-/// What a network says of a frame.
+/// The detections of a network in frame k.
 using Network = std::function<FrameDetections(std::uint32_t k)>;
 
 FrameDetections empty_frame(std::uint32_t k) {
@@ -111,7 +111,7 @@ FrameDetections whole_curtain(std::uint32_t k) {
   return found;
 }
 
-/// The error in metres; a share of frames without a pose counts as so many metres.
+/// The error in metres plus the share of frames without a pose (all frames lost: 1 m).
 double error(Disturbance disturbance, const Network& network, const SystemConfig& config) {
   ObjectTracker tracker(config.dynamics.object_tracking(), FillRule::kBothWays);
   System system(config, room().camera(), {.threads = 1});
@@ -135,12 +135,13 @@ double error(Disturbance disturbance, const Network& network, const SystemConfig
   return lost + (ate ? ate->translation_m.rmse : 1.0);
 }
 
-/// A mode with none of its stages but those named.
+/// A mode with only the named ones of its stages.
 SystemConfig with_stages(const std::string& mode, std::initializer_list<std::string> stages) {
   SystemConfig config;
   config.dynamics.mode = mode;
   config.tracking.tracker.enough_inliers = 0;
   config.dynamics.motion.standing_frames = 100000;
+  config.dynamics.tracker.masks_from_depth = false;
   for (const std::string stage : {"extension.enabled",
                                   "jump.enabled",
                                   "interaction.enabled",
@@ -221,8 +222,7 @@ TEST(Stages, FilledBoxesStandForThoseMissed) {
     expect_gain(Disturbance::kCurtain, network, mode, "fill_boxes");
 }
 
-// Features that have no match in the frame before are not told apart: the pose is better, not
-// right.
+// Features without a match in the previous frame are not judged: the pose is better, not right.
 TEST(Stages, StaticMatchesTellWhatMovesInABoxWithoutMask) {
   const Comparison errors =
       compare(Disturbance::kCurtain, half_blind(0), "paper", "static_matches.enabled");
@@ -234,7 +234,7 @@ TEST(Stages, StableDepthIsBetterThanAny) {
     expect_gain(Disturbance::kFrayed, empty_frame, mode, "depth_stability.enabled");
 }
 
-// A false person fixed in the image, over four fifths of it: no stage but the pose may suffer.
+// A false person, fixed in the image, covers four fifths of it: no stage but the pose may suffer.
 TEST(Stages, DoubtKeepsTheCameraBehindAFalseMask) {
   const Network network = [](std::uint32_t k) {
     FrameDetections found = empty_frame(k);

@@ -21,7 +21,7 @@ PreparedFrame System::prepare(FramePtr frame, FrameObjects objects) const {
 }
 
 FrameResult System::process(const RgbdFrame& frame, FrameObjects objects) {
-  const auto copy = std::make_shared<RgbdFrame>(frame);  // of the images' handles
+  const auto copy = std::make_shared<RgbdFrame>(frame);  // copies image handles, no pixels
   if (!copy->id.valid()) copy->id = FrameId(static_cast<std::uint32_t>(stages_->frame_number));
   return process(copy, std::move(objects));
 }

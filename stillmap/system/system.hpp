@@ -15,7 +15,7 @@
 #include "stillmap/system/results.hpp"
 #include "stillmap/system/settings.hpp"
 
-/// All of the library.
+/// The library.
 namespace stillmap {
 
 class Map;
@@ -23,17 +23,17 @@ enum class Stage;
 struct PreparedFrame;
 struct Session;
 
-/// How a System runs, beside its settings.
+/// Options of a System beside its settings.
 struct SystemOptions {
-  /// 1: everything runs inside the calls. 2 or more: mapping, dense map and loops run beside the
-  /// caller, and the map is put together on that many threads. The results are the same bits.
+  /// 1: all work is done inside the calls. 2 or more: mapping, dense map and loops run beside the
+  /// caller, and the map is assembled on that many threads. The results are the same bits.
   int threads = 1;
   bool localize_only = false;  ///< the map stays as it is
-  /// Observers are given the dense map so far whenever that many frames have been processed;
-  /// 0: at the end alone.
+  /// Observers are given the dense map so far each time this number of frames has been processed;
+  /// 0: only at the end.
   std::int64_t snapshot_every_frames = 0;
   std::vector<Observer*> observers = {};  ///< not owned; they outlive the System
-  std::function<void(Stage)> probe = {};  ///< concurrency/stage_probe.hpp; of tests
+  std::function<void(Stage)> probe = {};  ///< concurrency/stage_probe.hpp; for tests
 };
 
 /// The SLAM system: owns the map and every stage.
@@ -54,10 +54,10 @@ class System {
   System& operator=(const System&) = delete;
 
   /// Tracks a frame of the camera's size. `objects` are those that a network has found in it
-  /// (ObjectFinder gives them). Only with objects of its own may a frame become a key frame, begin
-  /// a map or be seen in the dense map.
+  /// (ObjectFinder gives them). Only a frame with objects found in it (MaskOrigin::kOwn) may become
+  /// a key frame, begin a map or add to the dense map.
   FrameResult process(const RgbdFrame& frame, FrameObjects objects = {});
-  /// The same for a frame that the caller shares. `origin` says whose objects it comes with.
+  /// The same for a frame that the caller shares. `origin` says from which frame `objects` come.
   FrameResult process(const FramePtr& frame,
                       FrameObjects objects = {},
                       MaskOrigin origin = MaskOrigin::kOwn);
@@ -65,32 +65,32 @@ class System {
   /// The part of process() that needs no other frame. May be called on any thread while earlier
   /// frames are processed.
   [[nodiscard]] PreparedFrame prepare(FramePtr frame, FrameObjects objects) const;
-  /// The rest of process() for a frame that prepare() was given.
+  /// The rest of process() for a frame that prepare() has prepared.
   FrameResult process(PreparedFrame prepared, MaskOrigin origin = MaskOrigin::kOwn);
 
-  /// The own objects of a frame that was processed while they were awaited, in the order of those
-  /// frames. It may become a key frame now, with the features off its own masks, and be seen in the
-  /// dense map. Nothing happens when it had no pose, or when a later one was given before.
+  /// Takes the objects found in a frame that was processed as kAwaited, in the order of the frames.
+  /// The frame may now become a key frame, with the features off their masks, and add to the dense
+  /// map. Nothing happens when it had no pose, or when a later frame's objects were taken before.
   void take_objects(FrameObjects objects);
-  /// No known place to track in: the next frame may begin a map and needs objects of its own.
+  /// Whether the next frame may begin a map, for want of one to track in: it needs objects of kOwn.
   [[nodiscard]] bool needs_own_objects() const;
 
-  /// The dense map so far: the bits that finish() would give now. The run goes on as if it had not
-  /// been asked for. Takes seconds for a large map.
+  /// The dense map so far: the bits that finish() would give now. The call does not change the run.
+  /// Takes seconds for a large map.
   [[nodiscard]] PointCloud map_snapshot() const;
 
   /// Ends the run: waits for pending work and makes the map. Call once.
   [[nodiscard]] RunResult finish();
-  /// The map as it would be with the frames at other poses, in the order of RunResult::trajectory;
-  /// frames without a pose add nothing to it. After finish().
+  /// The map with the frames at other poses, given in the order of RunResult::trajectory; frames
+  /// without a pose add nothing to it. Only after finish().
   [[nodiscard]] PointCloud map_with_poses(
       std::span<const std::optional<Eigen::Isometry3d>> T_world_frames) const;
 
-  /// Goes on from a saved session (session/session_io.hpp) once the camera sees a place that it
-  /// knows. Before the first frame. Throws Error when the session is of another camera or of
-  /// another image pyramid.
+  /// Continues a saved session (session/session_io.hpp) once the camera sees a place known to it.
+  /// Only before the first frame. Throws Error when the session is of another camera or of another
+  /// image pyramid.
   void load(Session session);
-  /// The session that can be saved. After finish(); nothing else may be asked then.
+  /// The session to be saved. Only after finish(); no other member may be called then.
   [[nodiscard]] Session take_session();
 
   /// The sparse map: key frames and landmarks.

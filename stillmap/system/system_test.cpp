@@ -39,7 +39,7 @@ struct FinishedRun {
   RunResult result;
 };
 
-// Runs the frames; those from `dark_begin` to `dark_end` - 1 without light.
+// Runs the frames; those from `dark_begin` to `dark_end` - 1 are dark.
 FinishedRun run(int threads, std::uint32_t dark_begin = kFrames, std::uint32_t dark_end = kFrames) {
   System system(static_world(), synthetic_camera(320, 240), {.threads = threads});
   FinishedRun done;
@@ -75,7 +75,7 @@ TEST(System, FollowsARenderedCameraAndMapsItsRoom) {
   EXPECT_GT(done.result.keyframes.size(), 2U);
   EXPECT_LT(done.result.keyframes.size(), kFrames / 3);
   EXPECT_GT(done.result.map.size(), 10000U);
-  // The world is the first camera's, and stamps are as the frames have them.
+  // The world frame is that of the first camera, and stamps are those of the frames.
   EXPECT_TRUE(
       done.result.trajectory[0].T_world_camera.isApprox(Eigen::Isometry3d::Identity(), 1e-12));
   for (std::uint32_t k = 0; k < kFrames; ++k) {
@@ -166,7 +166,7 @@ TEST(System, CanBeGivenUpWithJobsPending) {
   }
 }
 
-// Two seconds and a half in which people cross close before the camera, with a chair and a carton.
+// Two and a half seconds in which people with a chair and a carton pass close to the camera.
 struct CrowdedFrames {
   std::vector<FramePtr> frames;
   std::vector<FrameDetections> detections;
@@ -213,7 +213,7 @@ double error_among_people(const std::string& mode) {
       ->translation_m.rmse;
 }
 
-// The crowd with a network that looks at every fourth frame and is done four frames later.
+// The crowd with a network that works on every fourth frame and is done four frames later.
 struct LiveCrowd {
   RunResult result;
   double ate_m = 0;
@@ -224,7 +224,7 @@ LiveCrowd live_crowd(bool keyframes_have_own_masks) {
   constexpr std::size_t kGap = 4;
   const CrowdedFrames& crowded = crowded_frames();
   SystemConfig config;
-  config.dynamics.mode = "mask";  // nothing but the masks keeps people out
+  config.dynamics.mode = "mask";  // only the masks keep people out
   System system(config, synthetic_camera(320, 240), {.threads = 2});
   ObjectTracker tracker({}, FillRule::kCausal);
   LiveCrowd live;
@@ -255,8 +255,8 @@ LiveCrowd live_crowd(bool keyframes_have_own_masks) {
   return live;
 }
 
-// Points of the map that are farther from the true camera path's static surface than noise: nearer
-// than what the first and last frames, once people have gone, see through them.
+// The number of points of the map that at least three frames, every third at its true pose, see
+// through by more than 0.3 m.
 std::size_t seen_through(const PointCloud& map, const Trajectory& ground_truth) {
   const CrowdedFrames& crowded = crowded_frames();
   const CameraModel camera = synthetic_camera(320, 240);

@@ -13,8 +13,8 @@
 
 namespace stillmap {
 
-/// What VoxelGrid promises, written the plain way: all points of each voxel are kept, and means and
-/// votes taken at the end. For tests.
+/// A plain reference of VoxelGrid: keeps all points of each voxel and computes means and votes at
+/// the end. For tests.
 inline PointCloud brute_force_thinning(const PointCloud& points, double voxel_size_m) {
   std::map<std::array<double, 3>, std::vector<std::size_t>> voxels;
   for (std::size_t i = 0; i < points.size(); ++i) {

@@ -30,11 +30,11 @@ class Cli : public testing::Test {
   }
   ~Cli() override { std::filesystem::remove_all(folder_); }
 
-  // Runs "stillmap ARGUMENTS" in a shell, in the test's own folder, without the networks that this
-  // machine may have; `environment` is of the form NAME=VALUE.
+  // Runs "stillmap ARGUMENTS" in a shell, in the test's folder, without networks that are installed
+  // on this machine; `environment` is of the form NAME=VALUE.
   [[nodiscard]] Outcome run(const std::string& arguments,
                             const std::string& environment = "") const {
-    const std::string command = "cd '" + folder_.string() + "' && STILLMAP_MODELS=none " +
+    const std::string command = "cd '" + folder_.string() + "' && export STILLMAP_MODELS=none; " +
                                 environment + " '" STILLMAP_BINARY_DIR "/bin/stillmap' " +
                                 arguments;
     const int status = std::system(
@@ -43,7 +43,7 @@ class Cli : public testing::Test {
         WIFEXITED(status) ? WEXITSTATUS(status) : -1, content("stdout.txt"), content("stderr.txt")};
   }
 
-  // Exit code 2, nothing on standard output, and one line that has `part` in it.
+  // Expects exit code 2, nothing on standard output, and one line of error that contains `part`.
   void expect_refused(const std::string& arguments, const std::string& part) const {
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.exit_code, 2) << arguments;

@@ -33,14 +33,14 @@ namespace stillmap {
           MaskSource::kDetected};
 }
 
-/// What is known for certain of a rendered sequence.
+/// The truth of a rendered sequence.
 class TruthSequence {
  public:
-  /// A frame: who is where, and which ids move (people always).
+  /// A frame: the position of each object, and the ids that move (people always).
   struct Frame {
     cv::Mat1b ids;
     std::array<bool, 256> dynamic{};
-    std::vector<std::pair<int, PixelBox>> boxes;  // of what is in the image, by id
+    std::vector<std::pair<int, PixelBox>> boxes;  // of objects in the image, by id
     std::map<int, double> speeds;                 // of the same, m/s
   };
 
@@ -87,7 +87,7 @@ class TruthSequence {
   std::map<std::string, nlohmann::json> lines_;
 };
 
-/// The pose at a time, between those of a trajectory.
+/// The pose at a time, interpolated in a trajectory.
 [[nodiscard]] inline Eigen::Isometry3d pose_at(const Trajectory& trajectory, double stamp_s) {
   const auto next = std::ranges::lower_bound(
       trajectory, stamp_s, {}, [](const StampedPose& p) { return p.stamp.seconds; });
@@ -99,7 +99,7 @@ class TruthSequence {
   return interpolate(before.T_world_camera, next->T_world_camera, share);
 }
 
-/// How well some pixels cover what moves.
+/// How well a set of pixels covers the moving objects.
 struct Coverage {
   double hit = 0, missed = 0, wrong = 0, other = 0;  // pixels
 

@@ -34,7 +34,7 @@ class TestDice {
     for (std::uint64_t& word : d) word = (std::uint64_t{bits()} << 32U) | bits();
     return d;
   }
-  /// The descriptor with `count` bits flipped, some perhaps back again.
+  /// The descriptor after `count` flips of random bits, some perhaps flipped back.
   Descriptor flipped(Descriptor d, int count) {
     for (int i = 0; i < count; ++i) {
       const std::uint32_t bit = bits() % 256;
@@ -47,7 +47,7 @@ class TestDice {
   std::mt19937 engine_;
 };
 
-/// Random rectangles and discs over each other, slightly blurred: corners at all scales.
+/// Overlapping random rectangles and discs, slightly blurred: corners at all scales.
 inline GrayImage textured_image(int width, int height, std::uint32_t seed) {
   TestDice dice(seed);
   cv::Mat1b image(height, width, std::uint8_t{128});

@@ -15,7 +15,7 @@
 
 namespace stillmap {
 
-/// An empty folder that is gone with the object.
+/// An empty folder that the destructor removes.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -36,7 +36,7 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-/// While it lives, this process can write no file beyond a size: a full disk that needs no root.
+/// In its lifetime, this process can write no file beyond a size: a full disk without root.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
@@ -57,7 +57,7 @@ class FileSizeLimit {
 };
 
 /// The text of the Error that `call` throws; a failed expectation and "" when it throws none or one
-/// of more than a line.
+/// with several lines.
 [[nodiscard]] inline std::string error_of(const std::function<void()>& call) {
   try {
     call();

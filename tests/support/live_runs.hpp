@@ -13,7 +13,7 @@
 
 namespace stillmap {
 
-/// Time passes only when somebody waits or a test says so.
+/// A clock that advances only when a caller waits or a test says so.
 class TestClock : public Clock {
  public:
   [[nodiscard]] double now_s() override { return now_s_; }
@@ -37,7 +37,7 @@ inline const TumSequence& wall_sequence() {
   return kSequence;
 }
 
-/// Calls a part of the wall a person, after some time; fails from a stamp on, if told so.
+/// Detects a part of the wall as a person, after some time; optionally fails from a stamp on.
 class PersonSegmenter : public Segmenter {
  public:
   explicit PersonSegmenter(std::chrono::milliseconds time = {}, double fails_at_s = 1e9)
@@ -57,7 +57,7 @@ class PersonSegmenter : public Segmenter {
   double fails_at_s_;
 };
 
-/// That two runs are the same to the bit.
+/// Expects two runs to be equal bit by bit.
 inline void expect_same(const SequenceRun& a, const SequenceRun& b) {
   ASSERT_EQ(a.result.trajectory.size(), b.result.trajectory.size());
   for (std::size_t i = 0; i < a.result.trajectory.size(); ++i) {

@@ -6,7 +6,7 @@
 #include "stillmap/slam/loop/loop_detector.hpp"
 #include "tests/support/simulated_round.hpp"
 
-// What the tests of this module share.
+// Shared by the tests of this module.
 namespace stillmap {
 
 [[nodiscard]] inline MeasurementModel loop_measure(const SimulatedWorld& world) {
@@ -14,8 +14,8 @@ namespace stillmap {
                           world.level_scales());
 }
 
-/// What a detector finds that is asked for the first `keyframes` key frames, one after another, and
-/// told of no loop that was closed, but where tracking was lost.
+/// The loops that a detector finds for the first `keyframes` key frames, one after another. It is
+/// told where tracking was lost, but of no closed loop.
 [[nodiscard]] inline std::vector<LoopMatch> find_loops(const SimulatedMap& simulated,
                                                        const SimulatedWorld& world,
                                                        const LoopConfig& config = {},
@@ -35,7 +35,7 @@ namespace stillmap {
   return loops;
 }
 
-/// How the later key frame of a loop truly stands to the earlier.
+/// The true relative pose of the later and the earlier key frame of a loop.
 [[nodiscard]] inline Eigen::Isometry3d true_T_a_b(const SimulatedMap& simulated,
                                                   const LoopMatch& loop) {
   return simulated.T_world_keyframe[loop.edge.a.index()].inverse() *

@@ -5,8 +5,8 @@
 
 namespace stillmap {
 
-/// For tests: the derivative of `f` (a vector of any length) at `x` by central differences, right
-/// to about the square of `step` plus 1e-16 / `step`, relative to the size of f.
+/// For tests: the derivative of `f` (a vector of any length) at `x` by central differences. Its
+/// error, relative to the size of f, is about the square of `step` plus 1e-16 / `step`.
 template <class Function>
 [[nodiscard]] Eigen::MatrixXd numeric_jacobian(const Function& f,
                                                const Eigen::VectorXd& x,

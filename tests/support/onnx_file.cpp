@@ -9,7 +9,7 @@
 namespace stillmap {
 namespace {
 
-// The encoding of Protocol Buffers: numbers of seven bits a byte, and texts with their lengths.
+// The encoding of Protocol Buffers: numbers with seven bits per byte, and texts with their lengths.
 std::string varint(std::uint64_t value) {
   std::string bytes;
   for (; value >= 128; value /= 128) bytes += static_cast<char>(value % 128 + 128);
@@ -25,7 +25,7 @@ std::string text(int field, std::string_view content) {
          std::string(content);
 }
 
-// Fields and types by the numbers of ONNX's own description, onnx.proto.
+// Fields and types by their numbers in onnx.proto.
 constexpr int kFloat = 1, kHalf = 10;
 
 std::string value_info(const std::string& name, const std::vector<std::int64_t>& shape, int type) {

@@ -22,7 +22,7 @@ struct OnnxFile {
   std::vector<std::pair<std::string, std::string>> metadata = {};
   bool half_precision = false;  ///< of input and outputs
 
-  /// The bytes of its file.
+  /// The bytes of the network's file.
   [[nodiscard]] std::string bytes() const;
 };
 

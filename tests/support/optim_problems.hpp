@@ -29,7 +29,7 @@ class TestRandom {
   std::normal_distribution<double> normal_;
 };
 
-/// Which measurements have a depth.
+/// The measurements that have a depth.
 enum class Depths { kNone, kSome, kAll };
 
 inline constexpr double kInverseDepthSigma = 0.005;
@@ -71,7 +71,7 @@ inline PoseScene make_pose_scene(std::uint32_t seed, int count, Depths depths, d
 }
 
 /// Cameras side by side before a box of points: the exact poses and points, measured with noise.
-/// The first two cameras are held. `seen` is the share of cameras that see a point.
+/// The first two cameras are fixed. `seen` is the share of cameras that see a point.
 struct BundleSceneSpec {
   std::uint32_t seed = 1;
   int cameras = 8;
@@ -110,7 +110,7 @@ inline BundleProblem make_bundle(const BundleSceneSpec& spec) {
   return problem;
 }
 
-/// The same problem with its free poses and its points moved away from where they are.
+/// The same problem with its free poses and its points displaced.
 inline BundleProblem perturbed(BundleProblem problem, std::uint32_t seed, double sigma) {
   TestRandom random(seed);
   for (std::size_t c = 0; c < problem.held.size(); ++c) {

@@ -9,8 +9,8 @@ namespace stillmap {
 
 inline constexpr double kFrameInterval_s = 1.0 / 30.0;
 
-/// A hand that swings a camera: begins at the origin, stays within half a metre of it, moves at up
-/// to `speed` times 0.6 m/s and 0.6 rad/s.
+/// The path of a swinging hand-held camera: begins at the origin, stays within 0.5 m of it, moves
+/// at up to `speed` times 0.6 m/s and 0.6 rad/s.
 [[nodiscard]] inline Eigen::Isometry3d swinging(double time_s, double speed = 1.0) {
   const double t = speed * time_s;
   const Eigen::Vector3d turn(

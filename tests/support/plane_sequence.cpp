@@ -30,7 +30,7 @@ cv::Mat3b random_picture(std::uint32_t seed) {
   return picture;
 }
 
-// What a camera at (x, y) metres sees of a picture on a plane at `depth_m`.
+// The image of a picture on a plane at `depth_m`, from a camera at (x, y) metres.
 template <class Picture>
 Picture seen(const Picture& picture, double x_m, double y_m, double depth_m) {
   const double x_px = 20 + x_m * kFocal_px / depth_m, y_px = 20 + y_m * kFocal_px / depth_m;

@@ -5,9 +5,9 @@
 
 namespace stillmap {
 
-/// A sequence that needs no renderer: a camera slides along a textured wall 1.5 m before it, so
-/// that each image is the same picture, shifted by a known number of pixels. 320x240, 30 Hz, with
-/// ground truth. The camera moves 2 mm right and 1 mm down a frame.
+/// A sequence that needs no renderer: a camera slides along a textured wall at 1.5 m, so that each
+/// image is the same picture, shifted by a known number of pixels. 320x240, 30 Hz, with ground
+/// truth. The camera moves 2 mm right and 1 mm down a frame.
 void write_plane_sequence(const std::filesystem::path& folder, int frames);
 
 }  // namespace stillmap

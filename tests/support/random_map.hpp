@@ -52,7 +52,7 @@ inline constexpr std::uint32_t kFeaturesPerKeyframe = 12;
   return keyframe;
 }
 
-/// One operation that can be done on any map that holds what it names.
+/// One operation, applicable to any map that holds the ids that it names.
 using MapOperation = std::function<void(Map&)>;
 
 /// A random operation that is allowed on `map`: only key frames of `droppable` are dropped.

@@ -23,7 +23,7 @@ inline Eigen::Isometry3d looking_along_x(const Eigen::Vector3d& position) {
   return T;
 }
 
-/// A rectangle in the plane x = `x`, seen from -x, its picture upright.
+/// A rectangle in the plane x = `x`, seen from -x, with its picture upright.
 inline Mesh wall(double x, double half_width, double half_height, MaterialId material) {
   const float w = static_cast<float>(half_width), h = static_cast<float>(half_height);
   const float depth = static_cast<float>(x);
@@ -46,8 +46,8 @@ inline WorldState rest_state(const World& world) {
   return state;
 }
 
-/// Triangles at random before a camera at the origin that looks along +x; a few things, some of
-/// which have an id.
+/// Random triangles before a camera at the origin that looks along +x, in a few things, some with
+/// an id.
 inline World random_world(unsigned seed) {
   World world;
   std::mt19937 rng(seed);

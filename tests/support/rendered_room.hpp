@@ -10,8 +10,8 @@
 
 namespace stillmap {
 
-/// The rendered office, empty of people, as a hand-held Kinect of a quarter of the size sees it. A
-/// frame is rendered when it is first asked for.
+/// The rendered office without people, as seen by a hand-held Kinect with a quarter of the pixels.
+/// A frame is rendered at its first use.
 class RenderedRoom {
  public:
   explicit RenderedRoom(std::uint32_t frames, PathKind path = PathKind::kXyz)
@@ -26,7 +26,7 @@ class RenderedRoom {
     return frames_[k];
   }
 
-  /// The frame with nothing to see on it.
+  /// The frame with a black image and no depth.
   [[nodiscard]] FramePtr dark_frame(std::uint32_t k) const {
     RgbdFrame dark;
     dark.id = FrameId(k);

@@ -37,8 +37,7 @@ inline Eigen::Isometry3d looking(const Eigen::Vector3d& p, double yaw_deg, doubl
   return T;
 }
 
-/// A rectangle from a corner along two edges, a point every centimetre, in the middle of its
-/// square.
+/// A rectangle from a corner along two edges, with a point in the middle of each square centimetre.
 inline void add_rectangle(PointCloud& cloud,
                           const Eigen::Vector3d& corner,
                           const Eigen::Vector3d& a,
@@ -76,7 +75,7 @@ struct TestRoom {
     add_rectangle(cloud, {1.5, 1.6, 0.72}, {0.6, 0, 0}, {0, 0.8, 0});
   }
 
-  /// Where the room is in the frame of its first camera, as a run has it.
+  /// The room in the coordinates of its first camera, as in a run.
   [[nodiscard]] Eigen::Isometry3d T_world_room() const { return poses.front().inverse(); }
 
   void move(const Eigen::Isometry3d& T) {

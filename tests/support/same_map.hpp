@@ -12,7 +12,7 @@ namespace stillmap {
 
 // Expects two maps to be equal in every field.
 
-/// The grids are compared by what they answer.
+/// The grids are compared by the results of queries.
 inline void expect_same(const Features& a, const Features& b) {
   EXPECT_EQ(a.raw_px, b.raw_px);
   EXPECT_EQ(a.ideal_px, b.ideal_px);

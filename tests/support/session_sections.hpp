@@ -9,14 +9,14 @@
 
 namespace stillmap {
 
-/// A section as it stands in a file, without its checksum.
+/// A section as in a file, without its checksum.
 struct RawSection {
   std::string tag;
   std::string content;
 };
 
-/// The sections, without END, of bytes that need not be of a whole file: what does not look like a
-/// section ends the list.
+/// The sections, without END, of the bytes of a file that may be incomplete: the list ends where no
+/// valid section follows.
 [[nodiscard]] inline std::vector<RawSection> split_sections(std::string_view bytes) {
   std::vector<RawSection> sections;
   std::size_t at = kSessionHeadSize;

@@ -15,7 +15,7 @@ namespace stillmap {
 struct TestSessionSize {
   int keyframes = 6;  ///< ever; at least 5, two of which are dropped
   std::uint32_t features = kFeaturesPerKeyframe;
-  int operations = 150;  ///< on the map's landmarks; for fewer features it has one for each
+  int operations = 150;  ///< on the map's landmarks; with fewer features, each has a landmark
   int frames = 9;
   int points = 5;  ///< of a view
 };
@@ -79,7 +79,7 @@ inline Map map(const TestSessionSize& size, std::mt19937& rng) {
     next.submap = SubmapId(i < 4 ? 0 : 2);
     map.add_keyframe(std::move(next));
   }
-  if (size.features >= kFeaturesPerKeyframe) {  // which the operations name
+  if (size.features >= kFeaturesPerKeyframe) {  // the operations name features up to this number
     for (int i = 0; i < size.operations; ++i) random_operation(map, {}, rng)(map);
   } else {
     for (std::uint32_t i = 0; i < size.features; ++i) {
@@ -99,7 +99,7 @@ inline Map map(const TestSessionSize& size, std::mt19937& rng) {
 
 }  // namespace test_session_detail
 
-/// A session with something of everything: two submaps, key frames fixed to dropped ones, landmarks
+/// A session with every kind of content: two submaps, dropped key frames fixed to others, landmarks
 /// with several observations, views with and without labels and range.
 [[nodiscard]] inline Session random_session(std::uint32_t seed, const TestSessionSize& size = {}) {
   std::mt19937 rng(seed);

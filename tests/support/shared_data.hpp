@@ -9,8 +9,8 @@
 
 namespace stillmap {
 
-/// The path of recorded data by its name, such as "twin_walking_xyz/truth": in the folder that the
-/// variable STILLMAP_DATA names, else in ../shared/data beside the repository. It need not exist.
+/// The path of recorded data by its name, such as "twin_walking_xyz/truth": in the folder named by
+/// the variable STILLMAP_DATA, else in ../shared/data beside the repository. It need not exist.
 [[nodiscard]] inline std::filesystem::path shared_data(const std::string& name) {
   const char* variable = std::getenv("STILLMAP_DATA");
   const std::filesystem::path folder =

@@ -10,14 +10,13 @@
 
 namespace stillmap {
 
-/// A map of a simulated world together with what is true of it. Key frame k is at the k-th pose
-/// that was added.
+/// A map of a simulated world with its truth. Key frame k is at the k-th added pose.
 struct SimulatedMap {
   Map map;
   std::vector<Eigen::Isometry3d> T_world_keyframe;        ///< true poses
   std::vector<std::vector<std::uint32_t>> points;         ///< per key frame and feature
   std::map<std::uint32_t, LandmarkId> landmark_of_point;  ///< as made; merged ones stay
-  SubmapId current_world{0};                              ///< of key frames to come
+  SubmapId current_world{0};                              ///< submap of the next key frames
 
   explicit SimulatedMap(const SimulatedWorld& world) : map(world.level_scales()) {}
 };
@@ -40,7 +39,7 @@ KeyframeId add_true_keyframe(SimulatedMap& simulated,
                                          const ObservationNoise& noise,
                                          std::mt19937& rng);
 
-/// The world's point that most observations of the landmark are of.
+/// The world's point that most observations of the landmark show.
 [[nodiscard]] std::uint32_t true_point(const SimulatedMap& simulated, const Landmark& landmark);
 
 }  // namespace stillmap

@@ -13,7 +13,7 @@ void forget_old_landmarks(SimulatedMap& simulated, std::uint32_t k) {
   });
 }
 
-// Where tracking has each key frame instead of its true place, by left multiplication.
+// The drift of each key frame's tracked pose against its true pose, by left multiplication.
 std::vector<Eigen::Isometry3d> motions_of(const RoundSpec& spec) {
   std::vector<Eigen::Isometry3d> motions;
   Eigen::Isometry3d drift = Eigen::Isometry3d::Identity();

@@ -15,7 +15,7 @@ inline constexpr ObservationNoise kNoise{
     .pixel_sigma_px = 0.7, .inverse_depth_sigma = 0.01, .flipped_bits = 15};
 inline constexpr MeasurementConfig kMeasurement{.pixel_sigma_px = 0.7, .inverse_depth_sigma = 0.01};
 
-// A camera in a world whose map is known and true, so that only tracking errs.
+// A camera in a world whose map is true, so that all errors are those of tracking.
 class Walk {
  public:
   Walk(const CameraPath& path, const TrackerConfig& config, double readout_s = 0)

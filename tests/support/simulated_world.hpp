@@ -22,16 +22,16 @@ struct WorldPoint {
   double base_distance_m = 0;
 };
 
-/// What spoils an observation. All zero: exact.
+/// The faults of observations. All zero: exact.
 struct ObservationNoise {
   double pixel_sigma_px = 0;          ///< on level 0; grows with the level's scale
   double inverse_depth_sigma = 0;     ///< 1/m
   double missing_depth_share = 0;     ///< features whose depth is unknown
-  double wrong_descriptor_share = 0;  ///< features that look like nothing known
+  double wrong_descriptor_share = 0;  ///< features with unknown descriptors
   int flipped_bits = 0;               ///< of each descriptor
 };
 
-/// Features of one image with the truth that goes with them.
+/// Features of one image with their truth.
 struct Observed {
   Features features;
   std::vector<std::uint32_t> points;  ///< per feature, the index of the world's point
@@ -41,20 +41,20 @@ struct Observed {
 using CameraPath = std::function<Eigen::Isometry3d(double)>;
 
 /// Random points on the walls, floor and ceiling of a box and inside of it (at least 1.2 m from its
-/// middle), each with a descriptor of its own, and a camera that sees them without images. Nothing
-/// hides anything.
+/// middle), each with a descriptor, and a camera that observes them without images. There is no
+/// occlusion.
 class SimulatedWorld {
  public:
   struct Config {
     Eigen::Vector3d half_size_m{2.5, 1.5, 3.0};  ///< of the box, whose middle is the origin
     int points = 5000;
-    int kinds = 0;  ///< different corners; points of one kind look alike. 0 = each its own
+    int kinds = 0;  ///< number of different descriptors among the points; 0 = one per point
     std::uint32_t seed = 1;
   };
 
   SimulatedWorld(const Config& config, const CameraModel& camera);
 
-  /// What the camera sees from `T_world_camera`, in the order of the points.
+  /// The observations from `T_world_camera`, in the order of the points.
   [[nodiscard]] Observed observe(const Eigen::Isometry3d& T_world_camera,
                                  const ObservationNoise& noise,
                                  std::mt19937& rng) const;

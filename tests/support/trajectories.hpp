@@ -10,7 +10,7 @@
 
 namespace stillmap {
 
-/// What the TUM benchmark's scripts print for trajectories that were published.
+/// The output of the TUM benchmark's scripts for published trajectories.
 struct PublishedFigures {
   const char* name;  ///< in the shared test data
   std::size_t ate_pairs;

@@ -25,8 +25,8 @@ Trajectory at_positions(const std::vector<Eigen::Vector3d>& positions, double st
   return trajectory;
 }
 
-// Ends of a cross of arms 1, and of one of arms 1.1 and 1.2: turning or moving either can only make
-// the sum of squares larger, so that what is left is known.
+// Ends of a cross of arms 1, and of one of arms 1.1 and 1.2: any rotation or shift increases the
+// sum of squares, so that the remaining error is known.
 const std::vector<Eigen::Vector3d> kTruth = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}};
 const std::vector<Eigen::Vector3d> kLarger = {{1.1, 0, 0}, {-1.1, 0, 0}, {0, 1.2, 0}, {0, -1.2, 0}};
 

@@ -36,7 +36,7 @@ TEST(MapAlignment, FindsTheTransformOfAnyPath) {
   }
 }
 
-// A camera that trembles by a millimetre, estimated as exactly.
+// A camera that trembles by 1 mm, with estimates of the same accuracy.
 TEST(MapAlignment, StaysPutWhereTheTrajectorysOwnDoesNot) {
   const auto tremble = [](double scale) {
     return make_trajectory(50, 1, 0.1, [scale](double t) {
@@ -62,8 +62,8 @@ TEST(MapAlignment, WeighsPositionsAndAxes) {
     });
   };
   const Eigen::Isometry3d T = *map_alignment(circle(kTurn), circle(0));
-  // Of each pose's 6 points all are turned with the position, 1 m from the axis; 4, of the axes x
-  // and y, are held back, a metre from the position.
+  // All 6 points of each pose are turned with the position, 1 m from the axis; 4 of them, of the
+  // axes x and y, resist, 1 m from the position.
   EXPECT_NEAR(rotation_angle(T.linear()), kTurn * 6 / (6 + 4), 1e-6);
 }
 

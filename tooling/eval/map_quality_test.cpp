@@ -217,7 +217,7 @@ TEST_P(RandomClouds, AgreeWithBruteForce) {
   const double maps = static_cast<double>(map.size());
   const double surfaces = static_cast<double>(surface.size());
   const double ghost_count = static_cast<double>(ghosts.size());
-  ASSERT_GT(clusters(ghosts), 0U);  // else the test below would say little
+  ASSERT_GT(clusters(ghosts), 0U);  // else the test below would be weak
 
   const MapQuality quality = map_quality(map_cloud, {static_cloud, dynamic_cloud});
   EXPECT_EQ(quality.voxels, map.size());

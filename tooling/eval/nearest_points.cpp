@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kLeafSize = 8;
 
-/// The points as nanoflann asks for them. It measures in double precision.
+/// The points in the form that nanoflann needs. It measures in double precision.
 struct Cloud {
   std::vector<Eigen::Vector3f> points;
 
@@ -52,7 +52,7 @@ double NearestPoints::distance(const Eigen::Vector3f& p, double limit_m) const {
   double squared = 0;
   nanoflann::KNNResultSet<double, std::size_t> result(1);
   result.init(&nearest, &squared);
-  squared = limit_m * limit_m;  // the worst that is looked for
+  squared = limit_m * limit_m;  // the greatest distance searched
   const Eigen::Vector3d query = p.cast<double>();
   index_->tree.findNeighbors(result, query.data(), {});
   if (result.size() == 0) return std::numeric_limits<double>::infinity();

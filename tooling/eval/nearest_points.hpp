@@ -9,7 +9,7 @@
 
 namespace stillmap {
 
-/// Answers how far the nearest of many points is, exactly (a k-d tree of nanoflann).
+/// Finds the exact distance to the nearest of many points (a k-d tree of nanoflann).
 class NearestPoints {
  public:
   /// The points are finite. Takes O(n log n).
@@ -17,7 +17,7 @@ class NearestPoints {
   ~NearestPoints();
 
   /// Distance from the finite `p` to the nearest point, computed in double precision; infinity when
-  /// there is none nearer than `limit_m`. A small limit makes a fast answer.
+  /// none is nearer than `limit_m`. A small limit makes it fast.
   [[nodiscard]] double distance(const Eigen::Vector3f& p,
                                 double limit_m = std::numeric_limits<double>::infinity()) const;
 

@@ -74,7 +74,7 @@ std::optional<RpeResult> relative_pose_error(const Trajectory& groundtruth,
   std::vector<double> errors_m, errors_deg;
   for (const StampedPose& from : estimate) {
     const std::size_t j = nearest_index(estimate, from.stamp.seconds + delta_s);
-    if (j + 1 == estimate.size()) continue;  // it may be less than delta_s later
+    if (j + 1 == estimate.size()) continue;  // the last pose may be less than delta_s later
     const StampedPose& to = estimate[j];
     const std::optional<Eigen::Isometry3d> truth_from = truth.pose(from.stamp.seconds);
     const std::optional<Eigen::Isometry3d> truth_to = truth.pose(to.stamp.seconds);

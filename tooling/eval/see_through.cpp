@@ -10,7 +10,7 @@
 namespace stillmap {
 namespace {
 
-// Beyond it the distortion polynomial may bend rays back into the image.
+// Beyond this bound the distortion polynomial may bend rays back into the image.
 Eigen::AlignedBox2d ideal_image(const CameraModel& camera) {
   Eigen::AlignedBox2d box;
   const double right = camera.width_px - 0.5;

@@ -75,7 +75,7 @@ bool sees_through_by_rays(const cv::Mat2f& rays,
     }
   }
   const double z = static_cast<double>(depth.mat(at));
-  // Clearly inside only; random points keep clear of the image's rim.
+  // Only points clearly inside: random points avoid the image's rim.
   return best < 0.8 / 50 && z - p.z() > 0.05 + 3 * 0.0015 * z * z;
 }
 
@@ -113,7 +113,7 @@ TEST(SeeThrough, AgreesWithBruteForceWithAndWithoutDistortion) {
     const std::ptrdiff_t expected = std::ranges::count_if(times, [](int n) { return n >= 3; });
     ASSERT_GT(expected, 20);
     ASSERT_LT(expected, 380);
-    // With distortion the nearest ray and the nearest pixel differ for a point between two.
+    // With distortion the nearest ray and the nearest pixel may differ for points between two.
     EXPECT_NEAR(static_cast<double>(test.result().seen_through),
                 static_cast<double>(expected),
                 k1 == 0.0 ? 0.0 : 4.0)

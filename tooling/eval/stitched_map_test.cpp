@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The figures of maps on known ground: a rendered sequence stitched with its true poses.
+// The figures of a map with known truth: a rendered sequence stitched at its true poses.
 #include <array>
 #include <fstream>
 
@@ -26,7 +26,7 @@ class StitchedMap : public testing::Test {
     folder_ = shared_data("twin_walking_xyz");
   }
 
-  // The ids of all that ever moved, dilated by 2 pixels.
+  // The ids of all objects that ever moved, dilated by 2 pixels.
   [[nodiscard]] cv::Mat1b moved_pixels(const std::string& stamp) const {
     const cv::Mat1b ids = read_mask(folder_ / "truth" / "masks" / (stamp + ".png"));
     const nlohmann::json truth =
@@ -71,7 +71,7 @@ class StitchedMap : public testing::Test {
   std::filesystem::path folder_;
 };
 
-// The expected figures are another program's, on a map of its own that has a little less at the far
+// Another program computed the expected figures, on its own map, which has slightly less at the far
 // end: hence the tolerances.
 TEST_F(StitchedMap, HasTheKnownGhostsWhenNothingIsRemoved) {
   const MapQuality quality = measure(stitch(false));

@@ -10,7 +10,7 @@
 
 namespace stillmap {
 
-/// Keeps what became of each frame, and the warnings.
+/// Keeps the outcome of each frame, and the warnings.
 class FrameLog : public RunObserver {
  public:
   void on_frame(const RgbdFrame& frame, const FrameResult& result) override;
@@ -18,11 +18,11 @@ class FrameLog : public RunObserver {
   void on_dropped(std::size_t frames) override;
   void on_warning(const std::string& warning) override;
 
-  /// The frames so far, of every kind.
+  /// The number of frames so far, of every kind.
   [[nodiscard]] std::size_t frames() const { return frames_; }
   [[nodiscard]] std::size_t damaged() const { return damaged_.size(); }
 
-  /// Puts what is known into the report. Once.
+  /// Moves its data into the report. To be called once.
   void fill(RunReport& report);
 
  private:

@@ -16,18 +16,18 @@
 namespace stillmap {
 
 /// Reads frames, finds their objects and prepares them for the system; with threads, reading runs
-/// ahead on one, the rest on another. The results do not depend on that.
+/// ahead on one, the rest on another. The results do not depend on threads.
 class FramePreparation {
  public:
-  /// The work on one frame of the stream, and the earlier frames that it has made ready: objects
-  /// wait for later frames, so that these are others.
+  /// The work on one frame of the stream, and the earlier frames that it has completed: the objects
+  /// of a frame are known only some frames later.
   struct Step {
-    std::optional<DamagedFrame> damaged;  ///< the frame read, where it is damaged
-    std::vector<StageTime> times;         ///< of reading and of the network, where they worked
+    std::optional<DamagedFrame> damaged;  ///< the frame of the stream, if it is damaged
+    std::vector<StageTime> times;         ///< of reading and of the network, if any
     std::vector<PreparedFrame> ready;     ///< for System::process, in order
   };
 
-  /// `stream` and `system` outlive this. `ahead`: with threads.
+  /// `stream` and `system` outlive the object. `ahead`: with threads.
   FramePreparation(FrameStream& stream,
                    ObjectSource objects,
                    const System& system,
@@ -39,7 +39,7 @@ class FramePreparation {
   [[nodiscard]] std::optional<Step> next() { return prepared_.next(); }
 
  private:
-  using TimedFrame = std::pair<StreamedFrame, double>;  // with the milliseconds of its reading
+  using TimedFrame = std::pair<StreamedFrame, double>;  // with the reading time, ms
   [[nodiscard]] std::optional<TimedFrame> read();
   [[nodiscard]] std::optional<Step> prepare();
   [[nodiscard]] std::vector<PreparedFrame> prepare(std::vector<FrameObjects> objects);

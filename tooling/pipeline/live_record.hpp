@@ -13,14 +13,14 @@ namespace stillmap {
 /// The decisions of the clock for one frame of a live run.
 struct LiveStep {
   FrameId frame;
-  /// The frames whose objects came in before it, in order; its own when it waited for them.
+  /// The frames whose objects arrived before it, in order; this frame, too, if it waited for them.
   std::vector<FrameId> objects_of;
-  std::string stamp = {};  ///< the frame's stamp as its stream has it; empty where not known
+  std::string stamp = {};  ///< the frame's stamp as text of its stream; empty where not known
 
   bool operator==(const LiveStep&) const = default;
 };
 
-/// All that the clock has decided in a live run: with it, the run can be made again bit by bit.
+/// All decisions of the clock in a live run: with them, the run can be repeated bit by bit.
 using LiveRecord = std::vector<LiveStep>;
 
 /// The lines of live.jsonl, one for each frame that was processed, in order:
@@ -28,9 +28,9 @@ using LiveRecord = std::vector<LiveStep>;
 /// stream gave them.
 [[nodiscard]] std::string live_jsonl(std::span<const LiveStep> record);
 
-/// Reads such a file; keys that are not known are skipped, `stamp` may be missing. Throws Error
-/// naming file and line for other text, frames that are not in order, and objects of frames that
-/// were not processed before.
+/// Reads such a file; unknown keys are skipped, `stamp` may be missing. Throws Error naming file
+/// and line for other text, frames that are not in order, and objects of frames that were not
+/// processed before.
 [[nodiscard]] LiveRecord read_live_record(const std::filesystem::path& file);
 
 }  // namespace stillmap

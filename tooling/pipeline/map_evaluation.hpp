@@ -10,20 +10,20 @@
 
 namespace stillmap {
 
-/// What a rendered sequence tells of its world, all in one frame.
+/// The truth of a rendered sequence, all in one coordinate frame.
 struct SequenceTruth {
   Trajectory groundtruth;
   MapTruth map;
 };
 
-/// From groundtruth.txt, truth/static_map.ply in the sequence's folder and, where it is,
-/// truth/dynamic_map.ply; nothing when one of the first two is not there. Throws Error for a file
-/// that is broken or absurd, and for a static map without points.
+/// From groundtruth.txt, truth/static_map.ply and, where it exists, truth/dynamic_map.ply in the
+/// sequence's folder; nothing when one of the first two is missing. Throws Error for a broken file
+/// or absurd values, and for a static map without points.
 [[nodiscard]] std::optional<SequenceTruth> read_sequence_truth(const std::filesystem::path& folder);
 
-/// How good the map of a run is; `estimate` is the run's trajectory and says where the map lies.
-/// Nothing when too few of its stamps are known to the ground truth. Throws Error for a map with
-/// points beyond kMapExtent_m.
+/// The quality of a run's map; `estimate` is the run's trajectory, by which the map is aligned.
+/// Nothing when the ground truth has too few of its stamps. Throws Error for a map with points
+/// beyond kMapExtent_m.
 [[nodiscard]] std::optional<MapQuality> run_map_quality(const PointCloud& map,
                                                         const Trajectory& estimate,
                                                         const SequenceTruth& truth);

@@ -19,7 +19,7 @@ void NetworkFeed::look_at(const FramePtr& frame) {
 
 std::pair<FramePtr, FrameDetections> NetworkFeed::finish_look() {
   Look look = std::move(*look_);
-  look_.reset();  // first, for get() may throw
+  look_.reset();  // before get(), which may throw
   return {std::move(look.frame), look.detections.get()};
 }
 

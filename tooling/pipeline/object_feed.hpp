@@ -15,14 +15,14 @@
 
 namespace stillmap {
 
-/// What an ObjectFeed does at a frame.
+/// The result of an ObjectFeed for one frame.
 struct ObjectFeedStep {
   /// Frames whose objects have arrived since the last step, in order.
   std::vector<std::pair<FramePtr, FrameDetections>> arrived;
-  bool looking = false;  ///< the network begins to work on the step's frame
+  bool looking = false;  ///< the network begins work on this frame
 };
 
-/// The objects of some frames, which come in while later frames are processed.
+/// The objects of some frames, which arrive while later frames are processed.
 class ObjectFeed {
  public:
   ObjectFeed() = default;
@@ -30,16 +30,16 @@ class ObjectFeed {
   ObjectFeed& operator=(const ObjectFeed&) = delete;
   virtual ~ObjectFeed() = default;
 
-  /// To be called for each frame that is to be processed, in order. `needs_own`: waits for those of
-  /// this very frame, which come last. Throws what the network throws.
+  /// To be called for each frame that is to be processed, in order. `needs_own`: waits for the
+  /// objects of this frame, which come last. Throws what the network throws.
   [[nodiscard]] virtual ObjectFeedStep step(const FramePtr& frame, bool needs_own) = 0;
 };
 
-/// A network on a thread of its own that looks at one frame after another, whenever it is idle and
-/// `gap_frames` have passed since the last it looked at.
+/// A network on a separate thread. It takes a frame whenever it is idle and `gap_frames` have
+/// passed since the last frame that it took.
 class NetworkFeed : public ObjectFeed {
  public:
-  /// The segmenter outlives this.
+  /// `segmenter` outlives the object.
   NetworkFeed(const Segmenter& segmenter, int gap_frames)
       : segmenter_(segmenter), gap_frames_(gap_frames) {}
 
@@ -57,14 +57,14 @@ class NetworkFeed : public ObjectFeed {
   int gap_frames_;
   std::optional<FrameId> last_;
   std::optional<Look> look_;
-  // Tracking goes first. Last: it uses all else.
+  // Low priority: tracking goes first. The last member, because its thread uses all others.
   Worker worker_{Worker::Priority::kLow};
 };
 
-/// The same frames' objects at the same steps as in a run that was recorded.
+/// Gives the objects of the same frames at the same steps as in a recorded run.
 class RecordedFeed : public ObjectFeed {
  public:
-  /// The segmenter outlives this.
+  /// `segmenter` outlives the object.
   RecordedFeed(const Segmenter& segmenter, LiveRecord record);
 
   /// The frames must be those of the record. Throws Error where the record has no objects of a

@@ -8,9 +8,9 @@
 
 namespace stillmap {
 
-/// Writes the objects of a run, as they were used, as a folder of detections: with those filled in,
-/// masks by depth, and classes by their COCO names. Frames without a pose are in it, damaged ones
-/// are not.
+/// Writes the objects of a run, as they were used, as a folder of detections: with filled-in
+/// objects, masks by depth, and COCO class names. It includes frames without a pose, not damaged
+/// ones.
 class ObjectFolder : public Observer {
  public:
   /// Creates the folder. `image` is the size of the images. Throws Error as DetectionsWriter does.

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;  // keys stay in the order in which they are written here
 
-/// With this many decimals; never "-0.0".
+/// The value rounded to `decimals` decimals; never "-0.0".
 Json rounded(double value, int decimals) {
   const double scale = std::pow(10.0, decimals);
   return std::round(value * scale) / scale + 0.0;
@@ -63,7 +63,7 @@ Json object_json(const ObjectState& state, const Move* to_final) {
           {"v_world", vector_json(v_world, 3)}};
 }
 
-/// The key that was counted most often, the first of equals.
+/// The key with the highest count, the first of equals.
 template <class Key>
 Key most_frequent(const std::map<Key, std::size_t>& counts) {
   const auto less = [](const auto& a, const auto& b) { return a.second < b.second; };

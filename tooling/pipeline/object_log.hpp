@@ -14,8 +14,8 @@
 
 namespace stillmap {
 
-/// The objects of a frame, and the pose that it had when it was processed. Places and velocities of
-/// the objects are under that pose, so that a later correction of it moves them too.
+/// The objects of a frame, and the pose that it had when it was processed. Positions and velocities
+/// of the objects are under that pose, so that a later correction of the pose moves them, too.
 using LoggedFrame = std::pair<StampedPose, std::vector<ObjectState>>;
 [[nodiscard]] inline LoggedFrame log_frame(const FrameResult& result) {
   return {{result.stamp, result.T_world_camera}, result.objects};
@@ -26,17 +26,17 @@ using LoggedFrame = std::pair<StampedPose, std::vector<ObjectState>>;
 /// "filled","p_world","v_world"}]}`.
 ///
 /// `state` is "dynamic" or "static"; `motion` "still", "moving", "moved by someone" or "unknown";
-/// `by` the track of who moves it and `person` of who touches it or is before or behind it; `box`
-/// as in detections; `filled`: the network has missed it. `p_world` and `v_world`, in metres and
-/// metres a second, are under the poses of `final_poses`, which has the stamps of some of the
-/// frames, in order. What is not known is null: so are both in a frame without a pose.
+/// `by` is the track of the person who moves it, `person` that of the person who touches it or is
+/// before or behind it; `box` as in detections; `filled`: the network has missed it. `p_world` and
+/// `v_world`, in metres and metres a second, are under the poses of `final_poses`, which has the
+/// stamps of some of the frames, in order. Unknown values are null; without a final pose both are.
 [[nodiscard]] std::string objects_jsonl(std::span<const LoggedFrame> frames,
                                         const Trajectory& final_poses);
 
-/// What the frames say of each object on the whole, in the order of the tracks' numbers.
+/// A summary of each object over all frames, by ascending track number.
 [[nodiscard]] std::vector<ObjectSummary> summarize_objects(std::span<const LoggedFrame> frames);
 
-/// Keeps the objects of all frames that dynamics was run on.
+/// Keeps the objects of all frames judged by the dynamics stage.
 class ObjectLog : public Observer {
  public:
   void on_frame(const RgbdFrame& /*frame*/, const FrameResult& result) override {

@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-// A person, and a chair that it pushes, as a camera sees them that looks along the world's x.
+// A person who pushes a chair, seen by a camera that looks along the world's x.
 FrameResult pushed_chair(Stamp stamp) {
   FrameResult result;
   result.stamp = std::move(stamp);

@@ -9,22 +9,22 @@
 
 namespace stillmap {
 
-/// Finds the objects of frames and follows them. The objects of a frame come out some frames after
-/// it went in, because later frames tell which objects the network has missed in it.
+/// Finds the objects of frames and follows them. The objects of a frame are returned some frames
+/// later, because later frames show which objects the network has missed.
 class ObjectSource {
  public:
-  /// `segmenter` may be null: then every frame comes out at once and has no objects. It outlives
-  /// this.
+  /// `segmenter` may be null: then every frame is returned at once, without objects. It outlives
+  /// the object.
   ObjectSource(const Segmenter* segmenter, const ObjectTrackerConfig& config);
 
   /// Whether there is a network that finds objects.
   [[nodiscard]] bool has_network() const { return segmenter_ != nullptr; }
 
-  /// Takes the next frame; gives the objects of those frames that are ready, in order, each frame
+  /// Takes the next frame; returns the objects of the frames that are complete, in order, each
   /// once.
   [[nodiscard]] std::vector<FrameObjects> push(const RgbdFrame& frame);
 
-  /// The end: the objects of the frames that have not come out.
+  /// Ends the stream: returns the objects of the remaining frames.
   [[nodiscard]] std::vector<FrameObjects> flush();
 
  private:

@@ -13,7 +13,7 @@ namespace stillmap {
 namespace {
 
 constexpr double kEarlySeconds = 5;
-constexpr std::size_t kMostUnknown = 1000;  // a hostile list of detections has any number
+constexpr std::size_t kMostUnknown = 1000;  // a hostile list of detections may have any number
 
 constexpr std::string_view kAdvice =
     "if people are in the images, the network or its class names do not fit";

@@ -12,8 +12,8 @@
 
 namespace stillmap {
 
-/// Warns of a network that may be the wrong one for the images: one that finds nothing of a dynamic
-/// class in the first five seconds of stamps, or never, and one whose classes nobody knows.
+/// Warns of a network that may not suit the images: one that finds no object of a dynamic class in
+/// the first five seconds of stamps, or never, and one with unknown classes.
 class ObjectWatch : public Observer {
  public:
   using Warn = std::function<void(const std::string& warning)>;
@@ -38,7 +38,7 @@ class ObjectWatch : public Observer {
   std::set<std::string> unknown_;
 };
 
-/// The warning for classes that are static because nobody knows them. `names` is not empty; the
+/// The warning for classes that count as static because they are unknown. `names` is not empty; the
 /// first ten are named.
 [[nodiscard]] std::string unknown_classes_warning(const std::set<std::string>& names);
 

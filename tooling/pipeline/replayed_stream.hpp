@@ -11,11 +11,11 @@
 
 namespace stillmap {
 
-/// Plays of another stream the frames that a live run has processed, as its record has them. All
+/// Plays those frames of another stream that a live run has processed, according to its record. All
 /// other frames are dropped.
 class ReplayedStream : public FrameStream {
  public:
-  /// Stream and record outlive this. `name` is the record's file, for messages.
+  /// Stream and record outlive the object. `name` is the record's file, for messages.
   ReplayedStream(FrameStream& stream, const LiveRecord& record, std::string name)
       : stream_(stream), record_(record), name_(std::move(name)) {}
 
@@ -23,10 +23,10 @@ class ReplayedStream : public FrameStream {
   [[nodiscard]] std::optional<std::size_t> size() const override { return record_.size(); }
 
   /// The next frame of the record, never a damaged one. Throws Error for a frame of the record that
-  /// the stream lacks, that has another stamp there or that is damaged.
+  /// the stream lacks, has with another stamp, or has damaged.
   [[nodiscard]] std::optional<StreamedFrame> next() override;
 
-  /// The number of frames that were left out before the one that next() gave last.
+  /// The number of frames dropped before the one that next() returned last.
   [[nodiscard]] std::size_t dropped() const { return dropped_; }
 
  private:

@@ -26,7 +26,7 @@ std::unique_ptr<ObjectFeed> make_feed(const LiveInput& input) {
   return std::make_unique<NetworkFeed>(*segmenter, input.config.live.look_gap_frames);
 }
 
-/// What is done with each frame that was not dropped.
+/// The work on each frame that was not dropped.
 class LiveLoop {
  public:
   LiveLoop(const LiveInput& input, System& system, RunLog& log)
@@ -35,7 +35,7 @@ class LiveLoop {
         tracker_(input.config.dynamics.object_tracking(), FillRule::kCausal),
         feed_(make_feed(input)) {}
 
-  /// Gives the milliseconds from the beginning to the pose.
+  /// Returns the time from the beginning to the pose, ms.
   double process(const FramePtr& frame);
   [[nodiscard]] LiveResult take_result() { return std::move(result_); }
 
@@ -46,7 +46,7 @@ class LiveLoop {
   RunLog& log_;
   ObjectTracker tracker_;
   std::unique_ptr<ObjectFeed> feed_;
-  std::optional<FrameId> last_seen_;  // the last frame whose objects have come in
+  std::optional<FrameId> last_seen_;  // the last frame whose objects have arrived
   LiveResult result_;
 };
 
@@ -87,7 +87,7 @@ double LiveLoop::process(const FramePtr& frame) {
   const double prepared_ms = preparing.lap_ms();
   if (feed_) log_.observers().on_stage_time("objects carried", prepared_ms);
   const FrameResult result = system_.process(frame, std::move(objects), origin);
-  // After the pose, which somebody waits for.
+  // Only after the pose, for which the caller waits.
   Stopwatch taking;
   for (FrameObjects& earlier : of_earlier) system_.take_objects(std::move(earlier));
   if (!of_earlier.empty()) log_.observers().on_stage_time("own objects", taking.lap_ms());
@@ -116,7 +116,7 @@ void run_by_clock(const LiveInput& input, LiveLoop& loop, RunLog& log, LiveRepor
 void run_recorded(const LiveInput& input, LiveLoop& loop, RunLog& log, LiveReport& report) {
   ReplayedStream recorded(
       input.stream, *input.options.live->record, input.options.live->record_name);
-  // A frame, how long reading took and how many were dropped up to it.
+  // A frame, the time of reading it in ms, and the number of frames dropped before it.
   using Read = std::tuple<FramePtr, double, std::size_t>;
   const auto read = [&]() -> std::optional<Read> {
     begin_work(input.options.probe, Stage::kReading);

@@ -20,8 +20,8 @@ struct LiveResult {
 };
 
 /// Runs the system as with a camera: frames come by the clock, or are those of a record; the
-/// network looks at some of them on a thread of its own, and what it has found is carried forward
-/// to the others until it has looked again.
+/// network works on some of them on a separate thread, and its objects are carried forward to the
+/// other frames until the next result.
 [[nodiscard]] LiveResult run_live(const LiveInput& input, System& system, RunLog& log);
 
 }  // namespace stillmap

@@ -42,7 +42,7 @@ void add_map_at_true_poses(SequenceRun& run, const System& system, const Traject
   run.map_at_true_poses = system.map_with_poses(poses);
 }
 
-// `own` first; null is nobody.
+// `own` first; null observers are left out.
 std::vector<Observer*> both(std::vector<Observer*> own, std::span<Observer* const> others) {
   own.insert(own.end(), others.begin(), others.end());
   std::erase(own, nullptr);
@@ -71,7 +71,7 @@ RunLog::RunLog(const FrameStream& stream,
 
 void RunLog::skip(const DamagedFrame& damaged) {
   all_.on_damaged(damaged);
-  // Of a stream whose length is not known, the frames so far, and one damaged frame at any time.
+  // For a stream of unknown length: the frames so far, and at least one damaged frame is allowed.
   const std::optional<std::size_t> total = stream_.size();
   const std::size_t allowed =
       total ? *total / kFramesPerDamaged : 1 + frames_.frames() / kFramesPerDamaged;

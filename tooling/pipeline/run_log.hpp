@@ -18,10 +18,10 @@
 
 namespace stillmap {
 
-/// The observers that make a run's report, and those from outside; ends the run.
+/// Calls the observers that make a run's report and those of the caller; ends the run.
 class RunLog {
  public:
-  /// What is referred to outlives the log. The run's time begins now.
+  /// All arguments outlive the log. The run's time begins with this call.
   RunLog(const FrameStream& stream,
          const SystemConfig& config,
          const RunOptions& options,
@@ -29,12 +29,12 @@ class RunLog {
   RunLog(const RunLog&) = delete;
   RunLog& operator=(const RunLog&) = delete;
 
-  /// A frame is damaged. Throws Error when too many are.
+  /// Reports a damaged frame. Throws Error when too many are damaged.
   void skip(const DamagedFrame& damaged);
-  /// All observers: for the system to tell of its frames, and for what else there is to tell.
+  /// All observers, for the system and for events outside of it.
   [[nodiscard]] RunObserver& observers() { return all_; }
 
-  /// Ends the run of a system that tells observers() of its frames. Once, as the last call.
+  /// Ends the run of a system that calls observers(). To be called once, last.
   [[nodiscard]] SequenceRun finish(System& system);
 
  private:

@@ -10,7 +10,7 @@
 namespace stillmap {
 namespace {
 
-// As fast as it goes, no frame left out.
+// As fast as possible, without dropping frames.
 void run_through(System& system, RunLog& log, FramePreparation& prepared) {
   while (std::optional<FramePreparation::Step> step = prepared.next()) {
     for (const StageTime& time : step->times) log.observers().on_stage_time(time.stage, time.ms);

@@ -10,7 +10,7 @@ constexpr std::size_t kSamples = 8;
 
 }  // namespace
 
-// Where the total is not known, every second sample goes as soon as there are twice too many.
+// Where the total is not known, every second sample is dropped when there are twice too many.
 bool SampleLog::wants_next() {
   if (total_) return frames_ * kSamples / *total_ != (frames_ + 1) * kSamples / *total_;
   if (frames_ % stride_ != 0) return false;

@@ -13,15 +13,14 @@ namespace stillmap {
 /// Keeps some frames, spread evenly over the run, for the report to show.
 class SampleLog : public RunObserver {
  public:
-  /// `frames`: how many the run has; where that is not known, 8 to 15 frames are kept, else
-  /// about 8.
+  /// `frames`: the number of frames of the run; if unknown, 8 to 15 frames are kept, else about 8.
   explicit SampleLog(std::optional<std::size_t> frames) : total_(frames) {}
 
   void on_frame(const RgbdFrame& frame, const FrameResult& result) override;
   void on_damaged(const DamagedFrame&) override { ++frames_; }
   void on_dropped(std::size_t frames) override { frames_ += frames; }
 
-  /// Puts the samples into the report. Once.
+  /// Moves the samples into the report. To be called once.
   void fill(RunReport& report);
 
  private:

@@ -9,7 +9,7 @@
 namespace stillmap {
 namespace {
 
-// The ids of the samples that are kept of a run in which every third frame is dropped.
+// The ids of the samples kept in a run in which every third frame is dropped.
 std::vector<std::uint32_t> samples_of(std::optional<std::size_t> total, std::uint32_t frames) {
   SampleLog log(total);
   for (std::uint32_t i = 0; i < frames; ++i) {
@@ -29,7 +29,7 @@ std::vector<std::uint32_t> samples_of(std::optional<std::size_t> total, std::uin
 }
 
 TEST(SampleLog, SpreadsSamplesOverTheRun) {
-  // Of frames 9, 19, ... 79, those that are no third frame.
+  // Frames 9, 19, ... 79, except every third frame.
   EXPECT_EQ(samples_of(80, 80), (std::vector<std::uint32_t>{9, 19, 39, 49, 69, 79}));
 }
 

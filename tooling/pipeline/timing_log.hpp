@@ -15,12 +15,12 @@ class TimingLog : public RunObserver {
   void on_frame(const RgbdFrame& frame, const FrameResult& result) override;
   void on_stage_time(std::string_view stage, double ms) override;
 
-  /// Puts what is known into the report. Once.
+  /// Moves its data into the report. To be called once.
   void fill(RunReport& report);
 
  private:
   std::vector<double> frame_ms_;
-  std::vector<StageTimes> stages_;  // in the order in which they began first
+  std::vector<StageTimes> stages_;  // in the order of their first work
 };
 
 }  // namespace stillmap

@@ -30,7 +30,7 @@ std::optional<Eigen::AlignedBox2d> part_in_image(const PixelBox& px, const cv::M
   return part;
 }
 
-/// On the box where there is room above it, else inside; not on a label that is there already.
+/// Places the label above the box if there is room, else inside; never on another label.
 Label place_label(std::string text,
                   const Eigen::AlignedBox2d& box,
                   double unit,

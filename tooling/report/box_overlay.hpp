@@ -7,10 +7,10 @@
 
 namespace stillmap {
 
-/// The frame's objects as an SVG to lie over its picture: a box each, cut at the image's edge, with
-/// the number of its track, its class, and why it is taken as dynamic (class "dyn") or static
-/// ("sta"). Boxes that were filled in are dashed. Those outside the image and those that are no
-/// boxes are left out; empty when nothing is left.
+/// The frame's objects as an SVG overlay of its picture: for each a box, cut at the image's edge,
+/// with its track number, its class, and why it counts as dynamic (CSS class "dyn") or static
+/// ("sta"). Filled-in boxes are dashed. Boxes outside the image and invalid boxes are left out; the
+/// text is empty when none is left.
 [[nodiscard]] std::string box_overlay_svg(const ReportSample& sample);
 
 }  // namespace stillmap

@@ -50,7 +50,7 @@ TEST(BoxOverlay, TellsStaticAndFilledApart) {
 TEST(BoxOverlay, IsCutAtTheImagesEdge) {
   const std::string svg = box_overlay_svg(frame_with({object_at(600, -20, 700, 30)}));
   EXPECT_THAT(svg, HasSubstr("x=\"600.0\" y=\"0.0\" width=\"40.0\" height=\"30.0\""));
-  // 25 letters do not fit right of column 600, and a line above the box is not there.
+  // 25 letters do not fit right of column 600, and there is no line above the box.
   EXPECT_THAT(svg, HasSubstr("<text class=\"dyn\" x=\"457.0\" y=\"11.0\">"));
 }
 

@@ -6,8 +6,8 @@
 
 namespace stillmap {
 
-// Figures as people read them: with a fitting unit, about three digits, and a space between them at
-// which no line breaks. A value that is not finite is a dash.
+// Figures for display: a fitting unit, about three digits, and a no-break space between both. A
+// value that is not finite is a dash.
 
 inline constexpr const char* kDash = "\xE2\x80\x93";
 
@@ -16,7 +16,7 @@ inline constexpr const char* kDash = "\xE2\x80\x93";
 [[nodiscard]] std::string memory_text(double megabytes);       ///< "412 MB", "1.35 GB"
 [[nodiscard]] std::string count_text(std::size_t count);       ///< "1,234,567"
 
-/// "99.9 %": rounded down to one decimal, so that only all is 100 %. A dash when there are none.
+/// "99.9 %": rounded down to one decimal, so that only all is 100 %. A dash for a total of 0.
 [[nodiscard]] std::string share_text(std::size_t part, std::size_t whole);
 
 }  // namespace stillmap

@@ -41,7 +41,7 @@ ColorImage resized(const ColorImage& image, int max_width_px) {
   return ColorImage(small);
 }
 
-/// The mask in the picture's size, 255 where it is not 0; empty where it does not fit the image.
+/// The mask in the picture's size, 255 where it is not 0; empty if it does not fit the image.
 cv::Mat1b fitted(const cv::Mat1b& mask, cv::Size image, cv::Size picture) {
   cv::Mat1b out;
   if (mask.empty() || mask.size() != image) return out;

@@ -86,7 +86,7 @@ Tile memory_tile(const RunReport& report) {
 
 template <class Item, class ToText>
 std::string list_html(const std::vector<Item>& items, const ToText& to_text) {
-  constexpr std::size_t kMost = 200;  // a run on broken data must not make an endless page
+  constexpr std::size_t kMost = 200;  // a run on broken data must not make a very long page
   std::string out = "<ul>";
   for (std::size_t i = 0; i < std::min(items.size(), kMost); ++i) {
     out += "<li>" + html_escape(to_text(items[i])) + "</li>";

@@ -16,7 +16,7 @@ namespace stillmap {
 namespace {
 
 constexpr float kNothing = std::numeric_limits<float>::infinity();
-constexpr int kLargestSplat_px = 48;  // a point right before the eye must not hide everything
+constexpr int kLargestSplat_px = 48;  // a point very close to the camera must not hide everything
 
 struct Rendering {
   cv::Mat3b color;
@@ -46,8 +46,8 @@ void splat(Rendering& rendering, const Eigen::Vector3d& px, int side, const Rgb&
   }
 }
 
-// Eye-dome lighting (Boucheny 2009): a pixel darkens by how far it lies behind its neighbours. It
-// makes shapes readable that have no normals. Steps are relative to the distance in perspective.
+// Eye-dome lighting (Boucheny 2009): a pixel darkens by its distance behind its neighbours. This
+// shows the shape of points without normals. Steps are relative to the distance in perspective.
 cv::Mat1f dome_shade(const cv::Mat1f& depth, bool orthographic) {
   constexpr std::array<std::array<int, 2>, 8> kNeighbours = {
       {{-2, 0}, {2, 0}, {0, -2}, {0, 2}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}}};

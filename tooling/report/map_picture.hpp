@@ -11,17 +11,17 @@
 
 namespace stillmap {
 
-/// How a picture looks at the world. The camera's axes are x right, y down, z forward; its optical
-/// axis goes through the middle of the picture.
+/// The camera of a picture. Its axes are x right, y down, z forward; its optical axis goes through
+/// the middle of the picture.
 struct View {
   Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();
   int width_px = 960;
   int height_px = 540;
   bool orthographic = false;
   double scale = 600;             ///< focal length in pixels; pixels in a metre when orthographic
-  double near_m = 0.05;           ///< what is nearer along the optical axis is not drawn
+  double near_m = 0.05;           ///< points nearer along the optical axis are not drawn
   double point_size_m = 0.01;     ///< edge of the square that a point covers, at least one pixel
-  bool shade_depth_steps = true;  ///< darkens the rims of what lies behind something
+  bool shade_depth_steps = true;  ///< darkens pixels at the rim of nearer surface
   Rgb background = {255, 255, 255};
 };
 
@@ -31,13 +31,13 @@ struct View {
                                         const Eigen::Vector3d& target,
                                         const Eigen::Vector3d& down);
 
-/// Where a point falls: x and y in pixels (the upper left corner of the picture is 0, 0) and its
-/// depth along the optical axis. Nothing when it is nearer than the view's limit or not finite.
+/// The projection of a point: x and y in pixels (the upper left corner of the picture is 0, 0) and
+/// its depth along the optical axis. Nothing when it is nearer than the view's limit or not finite.
 [[nodiscard]] std::optional<Eigen::Vector3d> project_point(const View& view,
                                                            const Eigen::Vector3d& p_world);
 
-/// The cloud as seen in the view: nearest points win, of equally near ones the first in the cloud.
-/// Needs no window and no graphics hardware.
+/// Renders the cloud: the nearest point wins, of equally near ones the first in the cloud. Needs no
+/// window and no graphics hardware.
 [[nodiscard]] ColorImage render_points(const PointCloud& cloud, const View& view);
 
 /// A copy of the picture with a line through the points drawn over it.

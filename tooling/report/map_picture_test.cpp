@@ -71,7 +71,7 @@ TEST(RenderPoints, OrthographicPointsDoNotShrinkWithDistance) {
   EXPECT_EQ(pixel(image, 54, 42), (Rgb{255, 255, 255}));
 }
 
-// The nearest point of each pixel, straight from the definition, one pixel at a time.
+// The nearest point of each pixel, by the definition, one pixel at a time.
 TEST(RenderPoints, AgreesWithBruteForce) {
   std::mt19937 rng(7);
   const auto uniform = [&rng](double low, double high) {

@@ -14,15 +14,15 @@ namespace stillmap {
 /// min(count, limit) indexes below `count`, evenly spread, ascending.
 [[nodiscard]] std::vector<std::size_t> evenly_spread(std::size_t count, std::size_t limit);
 
-/// The poses' places, cut where more than half a second lies between two of them.
+/// The positions of the poses, cut at gaps of more than half a second.
 [[nodiscard]] std::vector<std::vector<Eigen::Vector3d>> continuous_parts(const Trajectory& poses);
 
 inline constexpr std::size_t kMapViewPoints = 150'000;
 
-/// What map_view.js needs, as JSON without '<': in level axes, `positions` 16 bit little endian
+/// The data of map_view.js as JSON without '<': in level axes, `positions` 16 bit little endian
 /// (value = low + code * step), `colors` 8 bit, both base64; `paths` of the cameras and `frusta` of
-/// at most 300 key frames as coordinates in metres; the `view` to begin with; `head_y`, above which
-/// the ceiling is. At most `limit` points of the map, evenly spread.
+/// at most 300 key frames as coordinates in metres; the initial `view`; `head_y`, above which the
+/// ceiling is. At most `limit` points of the map, evenly spread.
 [[nodiscard]] std::string map_view_json(const PointCloud& map,
                                         const SceneFrame& scene,
                                         const Trajectory& cameras,

@@ -21,7 +21,7 @@ void draw_caption(cv::Mat3b& sheet, const std::string& caption, const cv::Point&
       sheet, caption, base_left, cv::FONT_HERSHEY_SIMPLEX, 0.55, {40, 40, 40}, 1, cv::LINE_AA);
 }
 
-// Where the points fall, without the outer 0.2 % at each edge.
+// The bounds of the projected points, without the outer 0.2 % at each edge.
 Eigen::AlignedBox2d covered_px(const View& view, const PointCloud& map) {
   std::vector<double> x, y;
   const std::size_t stride = map.size() / 50'000 + 1;
@@ -41,7 +41,7 @@ Eigen::AlignedBox2d covered_px(const View& view, const PointCloud& map) {
   return box;
 }
 
-// Turned (orthographic: shifted) to the middle of what the points cover.
+// The view turned (orthographic: shifted) to the middle of the area that the points cover.
 View centered(View view, const Eigen::AlignedBox2d& box, const Eigen::Vector3d& down_world) {
   const Eigen::Isometry3d T_world_camera = view.T_camera_world.inverse();
   const Eigen::Vector2d middle_px(0.5 * view.width_px, 0.5 * view.height_px);
@@ -58,7 +58,7 @@ View centered(View view, const Eigen::AlignedBox2d& box, const Eigen::Vector3d& 
 
 View filled(View view, const PointCloud& map, const Eigen::Vector3d& down_world) {
   constexpr double kFilled = 0.95;
-  for (int turn = 0; turn < 2; ++turn) {  // turning changes what is covered a little
+  for (int turn = 0; turn < 2; ++turn) {  // turning changes the covered area slightly
     const Eigen::AlignedBox2d before = covered_px(view, map);
     if (before.isEmpty()) return view;
     view = centered(view, before, down_world);
@@ -79,7 +79,7 @@ View rough_view(MapSide side, const SceneFrame& scene, const ViewSize& size) {
       break;
   }
   View view = view_from_above(scene, size.width_px, size.height_px);
-  view.point_size_m *= 1.5;  // from here, points of one surface lie in rows that leave gaps
+  view.point_size_m *= 1.5;  // in this view, points of one surface lie in rows with gaps
   return view;
 }
 

@@ -13,11 +13,11 @@
 
 namespace stillmap {
 
-/// Where one looks at a map from: behind the cameras, their left, or straight above.
+/// The viewpoint on a map: behind the cameras, on their left, or straight above.
 enum class MapSide { kFront, kLeft, kTop };
 
-/// The map without what hangs over the cameras' heads (without cameras: over 1.9 m above the
-/// lowest), and without strays far outside the scene.
+/// The map without the points above the cameras (without cameras: more than 1.9 m above the lowest
+/// point), and without strays far outside the scene.
 [[nodiscard]] PointCloud cut_open(const PointCloud& map, const SceneFrame& scene);
 
 struct ViewSize {
@@ -25,13 +25,13 @@ struct ViewSize {
   int height_px = 480;
 };
 
-/// A view of a scene that is filled by the points of `map`, but for a few at its rims.
+/// A view of a scene that the points of `map` fill, except a few at its rims.
 [[nodiscard]] View view_from(MapSide side,
                              const SceneFrame& scene,
                              const PointCloud& map,
                              const ViewSize& size);
 
-/// As render_points(), but rendered twice as large and made smaller, so that edges are smooth.
+/// As render_points(), but rendered at twice the size and reduced, so that edges are smooth.
 [[nodiscard]] ColorImage render_smooth(const PointCloud& cloud, const View& view);
 
 /// A picture with its name.

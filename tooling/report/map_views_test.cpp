@@ -39,7 +39,7 @@ SceneFrame scene_of(const PointCloud& map) {
   return scene_frame(map, {{.stamp = {0, "0"}, .T_world_camera = Eigen::Isometry3d::Identity()}});
 }
 
-// The middle of a color's pixels, and how many there are.
+// The middle and the number of the pixels of a colour.
 struct Patch {
   Eigen::Vector2d center = Eigen::Vector2d::Zero();
   double pixels = 0;
@@ -107,7 +107,7 @@ TEST(ViewFrom, LeftHasTheBackWallLeft) {
 
 TEST(ViewFrom, TopIsAPlan) {
   const ColorImage image = picture(MapSide::kTop);
-  // 4 m by 3 m fill 320 by 240 pixels to 95 %: 76 pixels a metre; the floor is all but walls.
+  // 4 m by 3 m fill 320 by 240 pixels to 95 %: 76 pixels a metre; most of it is floor.
   EXPECT_NEAR(patch(image, kFloor).pixels, 0.95 * 0.95 * 320 * 240, 0.06 * 320 * 240);
   EXPECT_LT(patch(image, kBackWall).center.y(), 15);
   EXPECT_LT(patch(image, kLeftWall).center.x(), 15);

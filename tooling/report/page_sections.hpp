@@ -7,14 +7,14 @@
 
 namespace stillmap {
 
-// The parts of the report's page, as HTML: each says in words when it has nothing to show.
+// The parts of the report's page, as HTML; a part without data says so.
 
 struct RunStatus {
   bool good = false;
   std::string text;  ///< plain, not escaped
 };
 
-/// In a sentence, whether every frame was tracked.
+/// A sentence that says whether every frame was tracked.
 [[nodiscard]] RunStatus run_status(const RunReport& report);
 
 [[nodiscard]] std::string facts_html(const RunReport& report);  ///< camera, length, time taken
@@ -33,12 +33,12 @@ struct RunStatus {
 
 struct MapHtml {
   std::string section;
-  std::string script;  ///< goes to the end of the page; empty without a map
+  std::string script;  ///< for the end of the page; empty without a map
 };
 [[nodiscard]] std::string map_quality_html(const RunReport& report);  ///< empty without truth
 [[nodiscard]] MapHtml map_html(const RunReport& report);
 
-/// Where plots and captions begin to count seconds: the earliest stamp of the run's frames.
+/// Second 0 of plots and captions: the earliest stamp of the run's frames.
 [[nodiscard]] double first_stamp_s(const RunReport& report);
 
 }  // namespace stillmap

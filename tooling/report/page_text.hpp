@@ -9,8 +9,8 @@
 
 namespace stillmap {
 
-/// Text as it may stand in an element or in a quoted attribute: & < > " ' as entities; what is not
-/// UTF-8, and control characters but line end and tab, as U+FFFD.
+/// Escapes text for an element or a quoted attribute: & < > " ' as entities; bytes that are not
+/// UTF-8, and control characters except line end and tab, as U+FFFD.
 [[nodiscard]] std::string html_escape(std::string_view text);
 
 /// RFC 4648, with padding, without line ends.

@@ -7,8 +7,8 @@
 
 namespace stillmap {
 
-/// A picture as HTML that holds it. `alt` is plain text, `caption` HTML; `overlay` is an SVG, of
-/// the picture's proportions, that lies over it, or empty.
+/// A picture embedded in HTML. `alt` is plain text, `caption` HTML; `overlay` is an SVG of the
+/// picture's proportions that is drawn over it, or empty.
 [[nodiscard]] std::string figure_html(const ColorImage& picture,
                                       const std::string& alt,
                                       const std::string& caption,

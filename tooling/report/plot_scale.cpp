@@ -61,7 +61,7 @@ std::vector<std::string> tick_labels(const std::vector<double>& ticks) {
 ValueRange ValueRange::padded(double share) const {
   if (empty) return {.low = 0, .high = 1, .empty = false};
   const double width = high - low;
-  // A width that vanishes beside the values themselves cannot be divided into ticks.
+  // A width that is negligible against the values cannot be divided into ticks.
   const double magnitude = std::max(std::abs(low), std::abs(high));
   const double pad = width > 1e-9 * magnitude ? share * width : std::max(0.5, 0.1 * magnitude);
   return {.low = low - pad, .high = high + pad, .empty = false};

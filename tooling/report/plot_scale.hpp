@@ -12,20 +12,20 @@ namespace stillmap {
 /// give or take a few. Needs low < high, both finite.
 [[nodiscard]] std::vector<double> nice_ticks(double low, double high, int about);
 
-/// The numbers as text with as many decimals as tell them apart.
+/// The numbers as text, with as many decimals as needed to distinguish them.
 [[nodiscard]] std::vector<std::string> tick_labels(const std::vector<double>& ticks);
 
 /// A linear map from values to pixels along one axis.
 struct AxisScale {
   double low = 0, high = 1;        ///< values at the ends of the axis
-  double low_px = 0, high_px = 1;  ///< where they are drawn
+  double low_px = 0, high_px = 1;  ///< positions of these ends
 
   [[nodiscard]] double to_px(double value) const {
     return low_px + (value - low) / (high - low) * (high_px - low_px);
   }
 };
 
-/// Where a plot's values fall in its picture; y goes up.
+/// Maps a plot's values to pixels of its picture; y goes up.
 struct PlotScale {
   AxisScale x, y;
   [[nodiscard]] Eigen::Vector2d to_px(const Eigen::Vector2d& value) const {
@@ -33,7 +33,7 @@ struct PlotScale {
   }
 };
 
-/// The smallest range that holds some values; grows with each one.
+/// The smallest range that holds all added values.
 struct ValueRange {
   double low = 0, high = 0;
   bool empty = true;
@@ -43,7 +43,7 @@ struct ValueRange {
     high = empty || value > high ? value : high;
     empty = false;
   }
-  /// The range made wider by a share of its width at each end; never of zero width.
+  /// The range extended by a share of its width at each end; never of zero width.
   [[nodiscard]] ValueRange padded(double share) const;
 };
 

@@ -7,9 +7,9 @@
 
 namespace stillmap {
 
-/// The report as one HTML page that holds all it shows: figures, plots, pictures and a view of the
-/// map that can be turned (WebGL 2, with pictures where that is missing). It opens from disk and
-/// fetches nothing; its own policy forbids it to. Every text is escaped. Equal input gives equal
+/// The report as one self-contained HTML page: figures, plots, pictures and a view of the map that
+/// can be turned (WebGL 2, with pictures where that is missing). It opens from disk and fetches
+/// nothing; its content security policy forbids it. Every text is escaped. Equal input gives equal
 /// bytes. Sections without data say so.
 [[nodiscard]] std::string report_html(const RunReport& report);
 

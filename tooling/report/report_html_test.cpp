@@ -42,7 +42,7 @@ PointCloud wall() {
   return cloud;
 }
 
-// Everything that a report can show.
+// A report with every kind of data.
 RunReport full_report(const PointCloud& map) {
   RunReport report;
   report.version = "9.8.7";
@@ -98,8 +98,8 @@ RunReport full_report(const PointCloud& map) {
   return report;
 }
 
-// Walks through the tags of a page; returns what is wrong first, empty when every element that is
-// opened is closed in turn and every attribute is quoted.
+// Parses the tags of a page; returns the first fault, or "" when all elements are nested and closed
+// and every attribute is quoted.
 std::string first_fault(std::string_view page) {
   constexpr std::array<std::string_view, 4> kVoid = {"meta", "img", "input", "!DOCTYPE"};
   std::vector<std::string> open;
@@ -165,7 +165,7 @@ TEST(ReportHtml, ShowsAllThatIsKnown) {
         "<td>31.0\u00A0ms</td>"}) {
     EXPECT_THAT(page, HasSubstr(part));
   }
-  // The legend names what is there, and no more.
+  // The legend names only what is drawn.
   for (const char* const part : {"static object", "sudden change", "filled in</span>"}) {
     EXPECT_THAT(page, Not(HasSubstr(part)));
   }

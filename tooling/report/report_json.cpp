@@ -121,7 +121,7 @@ Json map_json(const RunReport& report) {
   return json;
 }
 
-/// Sums over objects of some kind; a sighting is an object in a frame.
+/// Sums over objects of one kind; a sighting is an object in a frame.
 struct ObjectCounts {
   std::size_t tracks = 0, sightings = 0, filled = 0, dynamic = 0;
 

@@ -20,17 +20,16 @@
 
 namespace stillmap {
 
-/// The times of one stage of the work, milliseconds, one for each time that it ran.
+/// The times of one stage, milliseconds, one for each time that it ran.
 struct StageTimes {
   std::string name;
   std::vector<double> ms;
 };
 
-/// A frame shown in the report, and what the system made of it. Of the images only colour is
-/// needed.
+/// A frame shown in the report, with its result. Of the images only colour is needed.
 using ReportSample = std::pair<RgbdFrame, FrameResult>;
 
-/// What is said of something that a network has found, over all frames that have it.
+/// A summary of one track over all its frames.
 struct ObjectSummary {
   struct MotionCount {
     std::string motion;
@@ -41,39 +40,39 @@ struct ObjectSummary {
   std::string category;
   std::size_t frames = 0;            ///< in which it is
   std::size_t filled = 0;            ///< of these, in which the network has missed it
-  std::size_t dynamic = 0;           ///< of these, in which it was taken as dynamic
-  std::string main_reason;           ///< why it was taken as what it was, most often
-  std::vector<MotionCount> motions;  ///< how it moved in how many frames
+  std::size_t dynamic = 0;           ///< of these, in which it counted as dynamic
+  std::string main_reason;           ///< the most frequent reason of its state
+  std::vector<MotionCount> motions;  ///< number of frames of each motion
 };
 
-/// How a run kept up with its camera.
+/// Figures of a live run.
 struct LiveReport {
-  std::optional<double> speed;             ///< of the camera's clock; none for a run made again
-  std::size_t dropped = 0;                 ///< frames that came while others were worked on
-  std::size_t looked_at = 0;               ///< frames that the network has looked at
-  std::vector<double> objects_age_frames;  ///< of each frame that knew of objects
+  std::optional<double> speed;             ///< of the camera's clock; none for a replayed run
+  std::size_t dropped = 0;                 ///< frames that came while others were being processed
+  std::size_t looked_at = 0;               ///< frames that the network has processed
+  std::vector<double> objects_age_frames;  ///< of each frame with objects
   std::vector<double> latency_ms;          ///< from a frame's arrival to its pose
 };
 
-/// All that the reports of a run say. A plain value: whoever ran the run fills it. What is not
-/// known stays empty: `nullopt`, or no elements.
+/// All data of a run's reports. A plain value, filled by the code that runs the system. Unknown
+/// values stay empty: `nullopt`, or no elements.
 struct RunReport {
   std::string version;      ///< of the program
   std::string sequence;     ///< name or path of the sequence; any text
   CameraModel camera;       ///< as used
   std::string config_yaml;  ///< the effective configuration
 
-  std::size_t frames_total = 0;       ///< associated rgb-depth pairs that were asked for
+  std::size_t frames_total = 0;       ///< associated rgb-depth pairs of the run
   std::size_t frames_tracked = 0;     ///< poses in the trajectory
   std::vector<DamagedFrame> skipped;  ///< unreadable ones, in order
   std::vector<Stamp> lost;            ///< frames read but without a pose, in order
 
-  std::size_t frames_elsewhere = 0;  ///< tracked in a world that nothing ties to this one
+  std::size_t frames_elsewhere = 0;  ///< tracked in a submap not joined to the main one
   std::vector<ClosedLoop> loops;     ///< closed in this run, in order
 
-  Trajectory estimate;                    ///< final poses of all tracked frames, in the run's world
-  Trajectory keyframes;                   ///< the same of the key frames
-  std::optional<Trajectory> groundtruth;  ///< in its own world
+  Trajectory estimate;   ///< final poses of all tracked frames, in the run's world frame
+  Trajectory keyframes;  ///< the same of the key frames
+  std::optional<Trajectory> groundtruth;  ///< in its own world frame
   std::optional<AteResult> ate;
   std::optional<RpeResult> rpe;
 
@@ -84,10 +83,10 @@ struct RunReport {
   std::optional<double> peak_memory_mb;
   std::optional<LiveReport> live;  ///< of a live run
 
-  std::string dynamics_mode;  ///< what was done about what moves
-  /// In the order of their numbers; nullopt when nothing looked for objects.
+  std::string dynamics_mode;  ///< name of the mode
+  /// By ascending track number; nullopt without a source of objects.
   std::optional<std::vector<ObjectSummary>> objects;
-  /// From the first frame to the first with an object of a dynamic class; nullopt for never.
+  /// From the first frame to the first with an object of a dynamic class; nullopt if none.
   std::optional<double> first_dynamic_s;
 
   std::vector<ReportSample> samples;  ///< about eight, in order

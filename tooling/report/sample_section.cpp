@@ -21,7 +21,7 @@ std::size_t count_of(const ReportSample& sample, const VerdictStyle* style) {
   return static_cast<std::size_t>(std::ranges::count_if(sample.second.features, has_style));
 }
 
-/// Best first, as the legend and captions have them.
+/// In the order of legend and captions, the best first.
 std::vector<const VerdictStyle*> shown_verdicts(const RunReport& report) {
   std::vector<const VerdictStyle*> shown;
   for (const VerdictStyle& style : verdict_styles()) {
@@ -55,7 +55,7 @@ std::string box_key(const char* kind, const char* name) {
   return fmt::format("<span class=\"item\"><span class=\"box {}\"></span>{}</span>", kind, name);
 }
 
-/// What is drawn in any of the frames, and nothing else.
+/// The marks that are drawn in any of the frames, and no others.
 std::string legend_html(const RunReport& report) {
   std::string items;
   for (const VerdictStyle* const style : shown_verdicts(report)) {

@@ -23,7 +23,7 @@ std::vector<Eigen::Vector3d> finite_points(const PointCloud& map, std::size_t at
   return points;
 }
 
-// Holds the points but for the outer 1 % at each side of each axis.
+// The box of the points without the outer 1 % at each end of each axis.
 Eigen::AlignedBox3d inner_box(const std::vector<Eigen::Vector3d>& points) {
   Eigen::AlignedBox3d box;
   if (points.empty()) return box;
@@ -41,7 +41,7 @@ Eigen::AlignedBox3d inner_box(const std::vector<Eigen::Vector3d>& points) {
   return box;
 }
 
-// How much heights along `down` repeat themselves: sum of squares of a histogram's counts.
+// The concentration of heights along `down`: the sum of squares of a histogram's counts.
 double height_concentration(const std::vector<Eigen::Vector3d>& points,
                             const Eigen::Vector3d& down) {
   constexpr double kBin_m = 0.04;
@@ -171,8 +171,8 @@ View view_turned(const SceneFrame& scene, const GazeTurn& turn, int width_px, in
       std::cos(turn.down) * ahead + std::sin(turn.down) * Eigen::Vector3d::UnitY();
   const Eigen::Vector3d down =
       std::cos(turn.down) * Eigen::Vector3d::UnitY() - std::sin(turn.down) * ahead;
-  // As near as the box's corners allow, each of which must be in the picture; a little nearer, as
-  // hardly anything lies in corners.
+  // As near as possible with all corners of the box in the picture; then slightly nearer, as
+  // corners are mostly empty.
   double distance = 0.5;
   for (int i = 0; i < 8; ++i) {
     const Eigen::Vector3d corner =

@@ -13,19 +13,19 @@
 
 namespace stillmap {
 
-/// What one needs to know of a map to look at it well. "Level" axes: x right, y down to the floor,
-/// z horizontal in the direction in which the cameras looked on the whole; origin as in the world.
+/// The layout of a map, for viewing it. "Level" axes: x right, y down to the floor, z horizontal in
+/// the mean viewing direction of the cameras; origin as in the world.
 struct SceneFrame {
   Eigen::Matrix3d R_level_world = Eigen::Matrix3d::Identity();
-  Eigen::AlignedBox3d box;      ///< level axes; holds the map but for strays; empty for no map
+  Eigen::AlignedBox3d box;      ///< level axes; holds the map except strays; empty for no map
   Eigen::AlignedBox3d cameras;  ///< level axes; holds the cameras' places
   double spacing_m = 0.01;      ///< typical distance of neighbouring points
 };
 
-/// Works out the floor's direction from the map itself, as the world's axes are those of a camera
-/// that may have been tilted (up to 45 degrees): heights of the points are most alike when floors,
-/// tables and ceilings are level. With `up_world` (not zero) that is the direction. Points that are
-/// not finite are left out.
+/// Estimates the floor's direction from the map, because the world's axes are those of a camera
+/// that may have been tilted (up to 45 degrees): the points' heights are most concentrated when
+/// floors, tables and ceilings are level. With `up_world` (not zero) that is the direction. Points
+/// that are not finite are left out.
 [[nodiscard]] SceneFrame scene_frame(const PointCloud& map,
                                      const Trajectory& cameras,
                                      const std::optional<Eigen::Vector3d>& up_world = {});
@@ -47,11 +47,11 @@ struct GazeTurn {
 /// A perspective view along the scene from behind and slightly above the cameras.
 [[nodiscard]] View view_along(const SceneFrame& scene, int width_px, int height_px);
 
-/// Level y coordinate a little over the cameras: what is higher (has a smaller y) hangs over their
-/// heads. The top of the map without cameras.
+/// Level y coordinate slightly above the cameras: points with a smaller y hang over their heads.
+/// Without cameras, the top of the map.
 [[nodiscard]] double head_height(const SceneFrame& scene);
 
-/// An orthographic view from above that leaves out what hangs over the cameras' heads.
+/// An orthographic view from above, without points that hang over the cameras' heads.
 [[nodiscard]] View view_from_above(const SceneFrame& scene, int width_px, int height_px);
 
 }  // namespace stillmap

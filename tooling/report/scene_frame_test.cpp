@@ -84,7 +84,7 @@ TEST(SceneFrame, ViewsShowTheRoom) {
     }
   }
   EXPECT_GT(seen, 4000);
-  // Farther along the gaze is higher up in the picture, right is right.
+  // Points farther ahead are higher in the picture, points on the right are right.
   const Eigen::Vector3d near_left = project_point(above, {-1, 1, 2}).value();
   const Eigen::Vector3d far_right = project_point(above, {1, 1, 3}).value();
   EXPECT_LT(near_left.x(), far_right.x());

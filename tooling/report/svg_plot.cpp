@@ -76,7 +76,7 @@ std::string grid(const PlotScale& scale, const Plot& plot) {
   return out;
 }
 
-// The path through the points, without those that would move the pen by less than can be seen.
+// The path through the points, without those that are too close together to be seen apart.
 std::string line_path(const PlotSeries& series, const PlotScale& scale) {
   constexpr double kVisible_px = 0.3;
   std::string out;
@@ -91,7 +91,7 @@ std::string line_path(const PlotSeries& series, const PlotScale& scale) {
     const bool ends = i + 1 == series.points.size() || !drawable(series.points[i + 1]);
     if (down && !ends && (px - last).norm() < kVisible_px) continue;
     append(out, "{}{:.1f} {:.1f}", down ? 'L' : 'M', px.x(), px.y());
-    if (!down && ends) out += "h0.1";  // a point by itself: round caps make it a dot
+    if (!down && ends) out += "h0.1";  // a single point: round caps make it a dot
     last = px;
     down = true;
   }
@@ -145,7 +145,7 @@ std::string legend(const Plot& plot) {
              marks ? fmt::format("M{:.1f} 20v-9", x + 12) : fmt::format("M{:.1f} 15h24", x));
     }
     append(out, "<text x=\"{:.1f}\" y=\"19\">{}</text>", x + 31, html_escape(series.name));
-    x += 31 + 6.3 * static_cast<double>(series.name.size()) + 18;  // about a letter's width
+    x += 31 + 6.3 * static_cast<double>(series.name.size()) + 18;  // 6.3 px: about a letter's width
   }
   return out;
 }

@@ -27,15 +27,15 @@ struct Plot {
   std::vector<PlotSeries> series;  ///< later ones are drawn on top
   int width_px = 1040;
   int height_px = 260;
-  bool equal_axes = false;   ///< a unit is as long on both axes
+  bool equal_axes = false;   ///< a unit has the same length on both axes
   bool y_from_zero = false;  ///< the y axis starts at 0 (values are not negative)
 };
 
-/// Where the plot's values are drawn, in the pixels of its picture.
+/// The scale from the plot's values to pixels of its picture.
 [[nodiscard]] PlotScale plot_scale(const Plot& plot);
 
-/// The plot as an SVG element to stand in an HTML page; colours and fonts come from the page's
-/// style sheet. A plot without points says so. All texts are escaped.
+/// The plot as an SVG element for an HTML page; colours and fonts come from the page's style sheet.
+/// A plot without points says so. All texts are escaped.
 [[nodiscard]] std::string plot_svg(const Plot& plot);
 
 }  // namespace stillmap

@@ -11,18 +11,18 @@
 
 namespace stillmap {
 
-/// Frames in a row without a pose: tracking was lost, or had not begun.
+/// Consecutive frames without a pose: tracking was lost, or had not begun.
 struct TrackingGap {
   Stamp first_lost;
   std::size_t frames = 0;  ///< without a pose
-  /// From the first of them to the frame that was found again, else to the last of them.
+  /// From the first of these frames to the first with a pose after it, else to the last of these.
   double seconds = 0;
-  std::optional<Stamp> found;     ///< the first frame with a pose after it; nothing: none came
-  std::optional<double> moved_m;  ///< from the last pose before it to the first after it
+  std::optional<Stamp> found;     ///< the first frame with a pose after the gap; nullopt: none
+  std::optional<double> moved_m;  ///< from the last pose before the gap to the first after it
 };
 
-/// `lost`: the frames without a pose, in order; `estimate`: those with one. Frames in neither (they
-/// could not be read) belong to no gap and end none.
+/// `lost`: the frames without a pose, in order; `estimate`: those with one. Frames in neither,
+/// which could not be read, belong to no gap and end none.
 [[nodiscard]] std::vector<TrackingGap> tracking_gaps(std::span<const Stamp> lost,
                                                      const Trajectory& estimate);
 

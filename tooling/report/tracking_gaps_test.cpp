@@ -13,7 +13,7 @@ Stamp at(int second) {
   return {static_cast<double>(second), std::to_string(second) + ".0"};
 }
 
-// Poses at these seconds, x as many decimetres.
+// Poses at these seconds; x is as many decimetres.
 Trajectory poses(const std::vector<int>& seconds) {
   Trajectory trajectory;
   for (const int second : seconds) {

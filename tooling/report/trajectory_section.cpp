@@ -11,7 +11,7 @@ namespace stillmap {
 namespace {
 
 constexpr int kEstimateColor = 0, kTruthColor = 1, kKeyframeColor = 4, kLostColor = 3;
-constexpr double kGap_s = 0.5;  // longer ones are left open in plots
+constexpr double kGap_s = 0.5;  // longer gaps are left open in plots
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 struct Place {
@@ -19,8 +19,8 @@ struct Place {
   Eigen::Vector3d p_world;
 };
 
-// Places in time with one that is not finite, where plots lift the pen, in gaps of over half a
-// second.
+// Positions over time, with a non-finite one in each gap of over half a second, where plots break
+// the line.
 std::vector<Place> places(const Trajectory& poses, double start_s) {
   std::vector<Place> out;
   for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -33,7 +33,7 @@ std::vector<Place> places(const Trajectory& poses, double start_s) {
   return out;
 }
 
-// The ground truth in the run's world, while the run lasted. Empty where nothing aligns them.
+// The ground truth in the run's world frame, during the run. Empty if it cannot be aligned.
 Trajectory aligned_truth(const RunReport& report) {
   Trajectory truth;
   if (!report.groundtruth || !report.ate || report.estimate.empty()) return truth;
@@ -117,7 +117,7 @@ Plot plot_from_above(const Paths& paths) {
   return plot;
 }
 
-// The three plots stand below each other: the first has the legend, the last the time's label.
+// The three plots are stacked: the first has the legend, the last the label of time.
 Plot plot_of_axis(const RunReport& report, const Paths& paths, int axis) {
   const char name = "xyz"[axis];
   const bool first = axis == 0;
@@ -138,7 +138,7 @@ Plot plot_of_axis(const RunReport& report, const Paths& paths, int axis) {
   return plot;
 }
 
-// The residuals in a unit that suits the largest, with the pen lifted in gaps.
+// The residuals in a unit that suits the largest, with the line broken at gaps.
 struct ErrorCurve {
   const char* unit = "m";
   double per_metre = 1;

@@ -43,7 +43,7 @@ struct Synonyms {
   std::string_view names;  // separated by blanks
 };
 
-// Names of VOC, of other data sets and of networks that people train, written as folded() has them.
+// Names of VOC, other data sets and common custom networks, in the form of folded().
 constexpr std::array<Synonyms, 25> kSynonyms = {{
     {"person",
      "persons people pedestrian pedestrians human humans man men woman women boy girl child "
@@ -85,7 +85,7 @@ std::string folded(std::string_view name) {
 
 using NameTable = std::map<std::string, std::string_view, std::less<>>;
 
-// The class of COCO for each name of one, folded.
+// The COCO class of each of its names, folded.
 NameTable make_name_table() {
   NameTable table;
   for (const std::string_view name : kCoco) table.emplace(folded(name), name);

@@ -14,7 +14,7 @@ namespace stillmap {
 
 /// The COCO name of a class under any of its names: "tvmonitor" of VOC -> "tv", "Pedestrian" and
 /// "man" -> "person". Case, blanks and signs between words make no difference: "Dining_Table" ->
-/// "dining table". The name of any other class unchanged.
+/// "dining table". Any other name is returned unchanged.
 [[nodiscard]] std::string coco_name(std::string_view name);
 
 /// Whether two names of classes differ at most in case, blanks and signs.

@@ -26,7 +26,7 @@ fs::path list_path(const fs::path& folder) {
   return folder / "detections.jsonl";
 }
 
-// A stamp is a plain number, so that the file cannot be outside this folder.
+// A stamp is a plain number, so the file cannot be outside this folder.
 fs::path mask_path(const fs::path& folder, const Stamp& stamp) {
   return folder / "masks" / (stamp.text + ".png");
 }
@@ -106,8 +106,8 @@ bool fits(const PixelBox& box, const PixelBox& extent) {
          std::abs(box.y0 - extent.y0) <= down && std::abs(box.y1 - extent.y1) <= down;
 }
 
-// Boxes of another format: [x, y, width, height] fits the pixels of all objects that have any,
-// [x0, y0, x1, y1] of none.
+// Refuses boxes of another format: those that fit the pixels of every object with pixels as [x, y,
+// width, height] and of none as [x0, y0, x1, y1].
 void check_box_format(const cv::Mat1b& mask, const DetectionsLine& line, const std::string& place) {
   const DetectedObject* first = nullptr;
   for (const DetectedObject& object : line.objects) {
@@ -130,7 +130,7 @@ void check_box_format(const cv::Mat1b& mask, const DetectionsLine& line, const s
       first->box.y1);
 }
 
-// Whether a box lies in the image's first pixel, as one in shares of the image does.
+// Whether a box lies in the image's first pixel, as a box in shares of the image size does.
 bool is_share(const DetectedObject& object) {
   constexpr double kLargest = 1.5;
   return object.box.x1 <= kLargest && object.box.y1 <= kLargest;

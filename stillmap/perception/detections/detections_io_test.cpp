@@ -196,7 +196,7 @@ TEST(DetectionsFolder, NoticesBoxesInShares) {
   EXPECT_THAT(open_error(folder.path()),
               testing::AllOf(HasSubstr("detections.jsonl:2: box [0.25, 0.1, 0.75, 1]"),
                              HasSubstr("in pixels, not in shares")));
-  // One pixel in the corner, among others, is one.
+  // A box of the corner pixel is valid among other boxes.
   write_list(folder.path(), none + line_of("2", "[0,0,1,1]") + line_of("3", "[0,0,20,30]"));
   EXPECT_EQ(DetectionsFolder::open(folder.path(), kImage).size(), 3U);
 }
@@ -217,7 +217,7 @@ TEST(DetectionsFolder, NoticesBoxesOfWidthAndHeight) {
                              HasSubstr("expected [x0, y0, x1, y1]")));
   write_list(folder.path(), line_of("1", "[20,4,8,18]"));
   EXPECT_THAT(open_error(folder.path()), HasSubstr("is it COCO's [x, y, width, height]?"));
-  // Boxes as they should be, and one that only holds a part of the object.
+  // Valid boxes, and one that holds only a part of the object.
   for (const char* box : {"[5,4,25,22]", "[4,3,26,24]", "[5,4,15,22]"}) {
     write_list(folder.path(), line_of("1", box));
     EXPECT_EQ(DetectionsFolder::open(folder.path(), kImage).at(stamp_of("1")).objects.size(), 1U);
@@ -277,7 +277,7 @@ TEST(DetectionsWriter, SaysWhenItCannotWrite) {
               HasSubstr("cannot be made"));
 }
 
-// Every frame of the given sequences, against the pixels that the lines promise.
+// Compares every frame of the given sequences with the pixels that its line promises.
 TEST(DetectionsFolder, ReadsThoseOfARealNetwork) {
   for (const char* name : {"twin_walking_xyz", "fr1_xyz_walkers"}) {
     STILLMAP_NEED_SHARED_DATA(name);

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-// 255 objects take less than 40 KiB. The limit keeps hostile files from filling the memory.
+// 255 objects take less than 40 KiB. The limit keeps hostile files from exhausting memory.
 constexpr std::size_t kMaxLineBytes = std::size_t{1} << 20U;
 constexpr std::size_t kMaxStampLength = 32;
 constexpr std::size_t kMaxClassLength = 64;
@@ -26,7 +26,7 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-// Any text as one line of ASCII.
+// Quotes any text as one line of ASCII.
 std::string quoted(const std::string& text) {
   return Json(text).dump(-1, ' ', true, Json::error_handler_t::replace);
 }

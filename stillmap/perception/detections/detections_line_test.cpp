@@ -28,7 +28,7 @@ std::string refusal(const std::string& text) {
   return message;
 }
 
-// A line with one object, of which one member is another.
+// A line with one object, one member of which is replaced.
 std::string with(const std::string& key, const std::string& value) {
   const auto part = [&](const std::string& name, const std::string& usual) {
     return '"' + name + "\":" + (name == key ? value : usual);

@@ -98,7 +98,7 @@ struct CellRow {
   const float *depth, *reach;
 };
 
-/// Which pixels with its id are the object's: all, or those of these depths or without any.
+/// The mask pixels that belong to the object: all, or those of these depths or without any.
 struct OwnRule {
   std::uint8_t id;
   bool all;
@@ -126,8 +126,8 @@ void decide(const MeasuredRow& row,
   }
 }
 
-/// The depth of every second pixel in every second row, which is a quarter of the work and as good,
-/// as objects are larger than that. A rim of cells without depth saves asking for the border.
+/// The depth of every second pixel in every second row: a quarter of the work, and sufficient for
+/// the size of objects. A rim of cells without depth saves tests for the border.
 class GrowthGrid {
  public:
   GrowthGrid(const ObjectView& object, const cv::Rect& area, const GrowthRule& rule)
@@ -146,7 +146,7 @@ class GrowthGrid {
     for (int row = 0; row < rows_; ++row) fill_row(row);
   }
 
-  /// Numbers the parts of the mask that hang together, and finds those that are the object's.
+  /// Numbers the connected parts of the mask and finds those that belong to the object.
   void label_parts() {
     for (int i = 0; i < static_cast<int>(cells_.size()); ++i) {
       if (!at(i).mask || at(i).part != 0 || at(i).depth <= 0) continue;
@@ -166,7 +166,7 @@ class GrowthGrid {
     judge_parts();
   }
 
-  /// Adds what hangs together with the object's parts, a ring of cells at a time.
+  /// Adds the cells connected to the object's parts, a ring of cells at a time.
   void grow() {
     std::size_t begin = 0;
     for (int way = 2; way <= rule_.longest_way_px && begin < order_.size(); way += 2) {
@@ -185,7 +185,7 @@ class GrowthGrid {
     for (const int i : order_) ++parts_[at(i).part - 1].cells;
   }
 
-  /// Takes back what grew from parts that are mostly not mask, and parts of something else.
+  /// Removes growth from parts that are mostly not mask, and parts of other objects.
   void prune() {
     for (std::size_t k = 0; k < order_.size(); ++k) {
       Cell& cell = at(order_[k]);
@@ -229,20 +229,20 @@ class GrowthGrid {
  private:
   struct Cell {
     float depth = 0;
-    std::uint32_t part = 0;  // that has it, from 1
+    std::uint32_t part = 0;  // number of the part with this cell, from 1
     bool mask = false, visited = false;
-    bool rim = true;  // of the image or of what may not join: neither joins nor is a hole
+    bool rim = true;  // border of the image, or a cell that may not join; never a hole
   };
   struct Part {
     std::size_t seeds = 0;          // cells of the mask
     std::size_t fitting_seeds = 0;  // of the object's depths
-    std::size_t cells = 0;          // with what has grown
+    std::size_t cells = 0;          // including grown cells
     DepthInterval fitting{1e9F, 0.0F};
     bool ours = false;
   };
 
-  /// The object's are the parts that mostly have its depths, and large ones: an arm held out, or
-  /// another person in the same mask.
+  /// A part belongs to the object if it mostly has the object's depths, or if it is large: an arm
+  /// held out, or another person in the same mask.
   void judge_parts() {
     for (const int i : order_) {
       Part& part = parts_[at(i).part - 1];
@@ -284,7 +284,7 @@ class GrowthGrid {
     Cell* cells = &at(index(row, 0));
     for (std::size_t c = 0; c < columns; ++c) {
       const bool mask = row_mask_[c] != 0;
-      const bool rim = !mask && row_other_[c] != 0;  // somebody else's, or nobody's
+      const bool rim = !mask && row_other_[c] != 0;  // of another object, or excluded
       cells[c] = {rim ? 0.0F : row_depth_[c], 0, mask, false, rim};
     }
   }
@@ -331,7 +331,7 @@ class GrowthGrid {
     return rim == 0 ? 0.0 : static_cast<double>(ours) / static_cast<double>(rim);
   }
 
-  /// For both pixels of each cell of a row: its depth, and how far from it a pixel's may be.
+  /// For both pixels of each cell of a row: the cell's depth, and the greatest deviation from it.
   void spread_cells(int row, std::vector<float>& depth, std::vector<float>& reach) const {
     const Cell* cells = &at(index(row, 0));
     for (std::size_t c = 0; c < static_cast<std::size_t>(columns_); ++c) {
@@ -346,9 +346,9 @@ class GrowthGrid {
   const GrowthRule& rule_;
   int x0_, y0_, columns_, rows_, stride_;
   std::vector<Cell> cells_;
-  std::vector<int> order_;  // cells taken, seeds first
+  std::vector<int> order_;  // joined cells, seeds first
   std::vector<Part> parts_;
-  std::vector<float> row_depth_;  // while cells are filled
+  std::vector<float> row_depth_;  // used while cells are filled
   std::vector<std::uint8_t> row_mask_, row_other_;
   std::size_t seeds_ = 0;
 };

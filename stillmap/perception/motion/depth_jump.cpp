@@ -20,11 +20,11 @@ int cells_in(int pixels) {
   return (pixels + 1) / 2;
 }
 
-constexpr float kNearest = 0.01F;  // metres; what comes nearer is not warped
+constexpr float kNearest = 0.01F;  // metres; nearer depth is not warped
 constexpr float kNothingNear = 1e9F;
 constexpr int kEnoughKnown = 7;  // of nine cells
 
-/// For each known cell the least depth of the nine around it; 0 for the others.
+/// For each known cell the least depth of the 3x3 cells around it; 0 for the others.
 cv::Mat1f least_around(const cv::Mat1f& cells) {
   cv::Mat1f known(cells.size()), least;
   for (int row = 0; row < cells.rows; ++row) {
@@ -41,8 +41,8 @@ cv::Mat1f least_around(const cv::Mat1f& cells) {
   return least;
 }
 
-/// The greatest depth of the nine cells around one; nothing where few are known. Beside an edge, a
-/// strip comes into view because the camera moves: nothing is known of it.
+/// The greatest depth of the 3x3 cells around one; nothing where few are known. Beside an edge, the
+/// camera's motion reveals a strip of which no depth is known.
 std::optional<float> greatest_around(const cv::Mat1f& cells, int row, int column) {
   float greatest = 0;
   int known = 0;
@@ -61,8 +61,8 @@ struct JumpLimit {
   [[nodiscard]] float at(float z) const { return base_m + per_m * z * z; }
 };
 
-/// Marks in a row of pixels what is nearer than `least`, one value for two pixels. Without a
-/// branch, so that it runs on vectors.
+/// Marks the pixels of a row that are nearer than `least`, one value for two pixels. Branch-free,
+/// so that it vectorises.
 STILLMAP_VECTOR_CLONES
 void mark_nearer(std::span<const float> depth,
                  const float* least,
@@ -80,7 +80,7 @@ void mark_nearer(std::span<const float> depth,
   jumps[depth.size() - 1] = z > 0 && z < least[cells] - limit.at(z) ? kCameNearer : kNoJump;
 }
 
-/// Marks in a row of pixels what is farther than all the cells around.
+/// Marks the pixels of a row that are farther than all cells around.
 void mark_revealed(std::span<const float> depth,
                    const cv::Mat1f& cells,
                    int row,
@@ -145,7 +145,7 @@ HalfDepth DepthWarper::warp(const DepthImage& previous,
   STILLMAP_CHECK(previous.mat.rows == camera_.height_px && previous.mat.cols == camera_.width_px);
   const Eigen::Matrix<float, 3, 4> T = T_current_previous.matrix().topRows<3>().cast<float>();
   const auto width = static_cast<std::size_t>(ray_x_.cols);
-  std::vector<float> nearest(ray_x_.total() + 1, kNothingNear);  // one more for what has no cell
+  std::vector<float> nearest(ray_x_.total() + 1, kNothingNear);  // one more: no cell
   std::vector<float> z(width);
   std::vector<std::int32_t> cells(width);
   for (int row = 0; row < ray_x_.rows; ++row) {
@@ -174,7 +174,7 @@ void DepthWarper::project_row(const Eigen::Matrix<float, 3, 4>& T,
                               const float* ray_y,
                               const Row& row) const {
   const auto fx = static_cast<float>(camera_.fx / 2), fy = static_cast<float>(camera_.fy / 2);
-  // A half more: to truncate is then to round to the nearest cell.
+  // Adding a half makes truncation round to the nearest cell.
   const auto cx = static_cast<float>(camera_.cx / 2 + 0.5);
   const auto cy = static_cast<float>(camera_.cy / 2 + 0.5);
   const auto k1 = static_cast<float>(camera_.k1), k2 = static_cast<float>(camera_.k2);
@@ -185,7 +185,7 @@ void DepthWarper::project_row(const Eigen::Matrix<float, 3, 4>& T,
   const float i = T(2, 0), j = T(2, 1), k = T(2, 2), l = T(2, 3);
   const auto columns = static_cast<float>(ray_x_.cols), rows = static_cast<float>(ray_x_.rows);
   const std::int32_t stride = ray_x_.cols, none = stride * ray_x_.rows;
-  for (std::size_t n = 0; n < row.size; ++n) {  // without a branch, so that it runs on vectors
+  for (std::size_t n = 0; n < row.size; ++n) {  // branch-free, so that it vectorises
     const float z = row.z[n];
     const float px = ray_x[n] * z, py = ray_y[n] * z;
     const float depth = i * px + j * py + k * z + l;

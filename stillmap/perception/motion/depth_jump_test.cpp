@@ -20,8 +20,8 @@ CameraModel small_camera(bool distorted) {
 }
 
 /// Two walls one behind the other, seen from a camera: the near one, at z = 2 m in the world,
-/// reaches from x = -0.5 to x = 0.3 and is a metre high; the far one, at 4 m, is everywhere.
-/// Optionally a third, from x = 0.3 on and 0.1 m wide, also at 2 m.
+/// reaches from x = -0.5 m to x = 0.3 m and is 1 m high; the far one, at 4 m, is infinite.
+/// Optionally a third at 2 m, from x = 0.3 m on and 0.1 m wide.
 DepthImage see(const CameraModel& camera, const Eigen::Isometry3d& T_world_camera, bool third) {
   const cv::Mat2f rays = pixel_rays(camera);
   DepthImage depth(cv::Mat1f(rays.size()));
@@ -75,7 +75,7 @@ TEST(DepthWarper, PutsPointsWhereTheCameraSeesThem) {
       for (int u = 0; u < 160; ++u) {
         if (warped.mat(v, u) == 0) continue;
         ++known;
-        // A cell's point may be half a cell off, which on these walls is little depth.
+        // A cell's point may be off by half a cell, which on these walls changes depth little.
         close += std::abs(warped.mat(v, u) - now.mat(2 * v, 2 * u)) < 0.01F ? 1 : 0;
       }
     }
@@ -88,7 +88,7 @@ TEST(DepthWarper, TheNearestOfSeveralPointsWins) {
   const CameraModel camera = small_camera(false);
   DepthImage before(cv::Mat1f(240, 320, 4.0F));
   before.mat(cv::Rect(150, 110, 20, 20)).setTo(1.0F);
-  // From 0.5 m to the right the near square is 67 pixels farther left, before what was there.
+  // From 0.5 m to the right, the near square is 67 pixels farther left.
   const Eigen::Isometry3d T = make_pose(Eigen::Quaterniond::Identity(), {-0.5, 0, 0});
   const HalfDepth warped = DepthWarper(camera).warp(before, T);
   const int shift = static_cast<int>(std::lround(camera.fx * 0.5 / 1.0));

@@ -10,7 +10,7 @@ namespace stillmap {
 namespace {
 
 constexpr double kMadToSigma = 1.4826;
-// Depth comes in steps, so most blocks of a wall may spread by exactly the same.
+// Depth is quantised, so most blocks of a wall may have exactly the same spread.
 constexpr double kLeastMad = 1e-6;
 
 double upper_median(std::vector<double> values) {
@@ -19,7 +19,7 @@ double upper_median(std::vector<double> values) {
   return *middle;
 }
 
-/// Standard deviation of the 3x3 pixels round one; nothing where one of them has no depth.
+/// Standard deviation of the 3x3 pixels around one; nothing where one of them has no depth.
 std::optional<double> block_spread(const cv::Mat1f& depth,
                                    const Eigen::Vector2f& px,
                                    bool relative) {

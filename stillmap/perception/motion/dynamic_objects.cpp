@@ -123,7 +123,7 @@ DynamicsResult DynamicObjects::judge(const DepthImage& depth,
           filled_from(std::move(expected),
                       warper_.warp(earlier.depth, earlier.T_current_previous, earlier.dynamic));
     }
-    // Without the dynamic pixels of then, an unchanged surface may just not have moved yet.
+    // Without that frame's dynamic pixels, an unchanged surface may be one that has not moved yet.
     if (!previous.front().dynamic.empty()) known_static = expected;
   }
   result.mask.extended = mode_.extension == ExtensionRule::kNone || !config_.extension.enabled
@@ -196,7 +196,7 @@ ObjectMask DynamicObjects::extended_mask(const DepthImage& depth,
         mode_.extension == ExtensionRule::kBox && object.mask_source == MaskSource::kDepth;
     const MaskArea area = box_alone ? MaskArea{} : measured.areas[static_cast<std::size_t>(id)];
     const ObjectView view{depth, objects.mask, id, object.detection.box};
-    // A box in place of a mask holds all that is known already.
+    // A box used as mask cannot be extended: it already holds every pixel.
     PixelPatch patch =
         object.mask_source == MaskSource::kBox
             ? mask_patch(view, area)
@@ -207,7 +207,7 @@ ObjectMask DynamicObjects::extended_mask(const DepthImage& depth,
   return ObjectMask(extended);
 }
 
-// Then it has grown over furniture or a wall. Fan 2020 knows no such bound.
+// True when the mask has grown over furniture or a wall. Fan 2020 has no such bound.
 bool DynamicObjects::outgrows_its_class(const TrackedObject& object,
                                         const PixelPatch& patch,
                                         const DepthImage& depth) const {

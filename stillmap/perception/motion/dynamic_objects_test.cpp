@@ -19,8 +19,8 @@
 namespace stillmap {
 namespace {
 
-/// A person at 2 m, a chair at 2 m that the person's box meets, one at 3 m that it meets too, one
-/// far aside, and a table.
+/// A person at 2 m, three chairs (at 2 m and at 3 m, both with boxes that meet the person's, and
+/// one far aside), and a table.
 struct Office {
   DepthImage depth{cv::Mat1f(480, 640, 5.0F)};
   FrameObjects objects;
@@ -32,7 +32,7 @@ struct Office {
     add("chair", {150, 250, 200, 400}, 3.0F);
     add("chair", {500, 250, 600, 400}, 2.0F);
     add("dining table", {250, 400, 350, 470}, 2.0F);
-    // Their boxes reach over each other.
+    // The boxes overlap.
     objects.objects[1].detection.box.x0 = 280;
     objects.objects[2].detection.box.x1 = 220;
   }
@@ -54,7 +54,7 @@ struct Office {
   }
 };
 
-// Somebody's mask on a wall: nothing in depth tells where the person ends.
+// A person's mask on a wall: depth does not show where the person ends.
 TEST(DynamicObjects, AMaskDoesNotGrowBeyondTheSizeOfItsClass) {
   Office office;
   office.depth.mat.setTo(2.5F);
@@ -78,7 +78,7 @@ std::vector<StateReason> reasons(const DynamicsResult& result) {
   return found;
 }
 
-// A network that gives boxes alone: without masks by depth every meeting of boxes is a doubt.
+// A network that gives only boxes: without masks by depth, overlap would be possible contact.
 TEST(DynamicObjects, BoxesAloneAreJudgedByTheirDepth) {
   for (const bool by_depth : {true, false}) {
     const Office office;
@@ -189,7 +189,7 @@ struct Result {
   }
 };
 
-/// A frame of a sequence with what tracking makes of its detections.
+/// A frame of a sequence with its tracked objects.
 struct SequenceFrame {
   FramePtr frame;
   FrameObjects objects;
@@ -203,7 +203,7 @@ SequenceFrame frame_with_objects(const TruthSequence& data, std::uint32_t index)
   return {frame, *tracker.push({frame->id, data.detections(index), frame->depth})};
 }
 
-/// What a mode covers in every ninth frame of a sequence, true poses given.
+/// The pixels that a mode covers in every ninth frame of a sequence, at true poses.
 Result run_on(const TruthSequence& data, const DynamicsMode& mode) {
   const TumSequence& sequence = data.sequence();
   const Trajectory poses = read_trajectory(*sequence.groundtruth_file());
@@ -255,12 +255,12 @@ TEST(DynamicObjects, CoverWhatMovesOnTruth) {
     print("  mask", mask);
     print("  paper", paper);
     print("  full", full);
-    // Each stage finds more of what moves.
+    // Each stage finds more of the moving pixels.
     EXPECT_GT(paper.extended.recall(), paper.raw.recall());
     EXPECT_GT(paper.all.recall(), paper.extended.recall());
     EXPECT_GT(full.extended.recall(), full.raw.recall());
     EXPECT_GT(full.all.recall(), full.extended.recall());
-    // Full finds more than the paper's way, and takes less of what stands.
+    // `full` finds more than `paper` and covers fewer static pixels.
     EXPECT_GT(full.all.recall(), mask.all.recall() + 0.015);
     EXPECT_GT(full.all.recall(), paper.all.recall());
     EXPECT_LT(full.all.wrong_share(), 0.85 * paper.all.wrong_share());

@@ -28,7 +28,7 @@ Mask widened(const Mask& mask, double margin_px) {
   return Mask(wide);
 }
 
-/// Which objects, by their ids, are of some tracks.
+/// Marks the ids of the objects that belong to the given tracks.
 std::array<bool, 256> objects_among(const std::vector<ObjectState>& states,
                                     const std::vector<TrackId>& tracks) {
   std::array<bool, 256> among{};
@@ -38,8 +38,9 @@ std::array<bool, 256> objects_among(const std::vector<ObjectState>& states,
   return among;
 }
 
-constexpr float kMostDoubt = 0.9F;      // of a network that is sure
-constexpr float kTrustOfMovers = 0.1F;  // wrong poses and masks make still things seem to move
+constexpr float kMostDoubt = 0.9F;  // at a score of 1
+constexpr float kTrustOfMovers =
+    0.1F;  // not 0: wrong poses and masks make still objects seem to move
 
 class JudgingStage final : public DynamicsStage {
  public:
@@ -101,11 +102,11 @@ class JudgingStage final : public DynamicsStage {
   std::optional<PastView> last_;
   std::deque<PastView> past_;     // every few frames, the newest last
   std::int64_t number_ = 0;       // of frames remembered
-  std::int64_t found_again_ = 0;  // number of the first of them since tracking was lost
+  std::int64_t found_again_ = 0;  // number of the first frame since tracking was lost
   FeaturesPtr features_;          // of the last frame, as they were extracted
 };
 
-// The newest view that is at least that old.
+// The newest view that is at least `frames_ago` frames old.
 const JudgingStage::PastView* JudgingStage::past_view(std::int64_t frames_ago) const {
   for (auto view = past_.rbegin(); view != past_.rend(); ++view) {
     if (number_ - view->number >= frames_ago) return &*view;
@@ -159,9 +160,8 @@ FrameDynamics JudgingStage::judge(
   return dynamics;
 }
 
-// A network that is sure is mostly right about what a thing is, not about whether it moves. What
-// has stood still since it was first seen is trusted more; people sway, so that they are not
-// trusted as things are.
+// The score of a network tells how surely it knows the class, not whether the object moves. Objects
+// that have stood still since first seen are trusted more; people are not, because they sway.
 std::vector<float> JudgingStage::trust_in(const FrameObjects& objects,
                                           const std::vector<ObjectState>& states) const {
   const std::array<bool, 256> moving = objects_among(states, motions_.moving());
@@ -177,21 +177,18 @@ std::vector<float> JudgingStage::trust_in(const FrameObjects& objects,
 }
 
 std::optional<DoubtedPixels> JudgingStage::doubted(const FrameDynamics& dynamics) const {
-  if (std::ranges::none_of(dynamics.trust, [](float trust) { return trust > 0; })) {
-    return std::nullopt;
-  }
-  std::array<bool, 256> doubtful{};
+  const bool any_dynamic = std::ranges::any_of(dynamics.judged.states, &ObjectState::dynamic);
+  if (!any_dynamic || dynamics.trust.empty()) return std::nullopt;
   std::array<float, 256> trust{};
   trust[0] = 1.0F - kMostDoubt;  // the margin around an object
-  for (std::size_t i = 0; i < dynamics.trust.size(); ++i) {
-    trust[i + 1] = dynamics.trust[i];
-    doubtful[i + 1] = dynamics.trust[i] > 0;
-  }
-  const Mask moves = widened(dynamics.judged.mask.all_without(doubtful), config_.feature_margin_px);
-  DoubtedPixels pixels{Mask(cv::Mat1b(moves.mat.size())), cv::Mat1f(moves.mat.size())};
-  for (int row = 0; row < moves.mat.rows; ++row) {
-    for (int x = 0; x < moves.mat.cols; ++x) {
-      const bool doubted = dynamics.excluded_from_pose.covers(row, x) && !moves.covers(row, x);
+  std::ranges::copy(dynamics.trust, trust.begin() + 1);
+  std::array<bool, 256> every{};
+  every.fill(true);
+  const Mask jumps = widened(dynamics.judged.mask.all_without(every), config_.feature_margin_px);
+  DoubtedPixels pixels{Mask(cv::Mat1b(jumps.mat.size())), cv::Mat1f(jumps.mat.size())};
+  for (int row = 0; row < jumps.mat.rows; ++row) {
+    for (int x = 0; x < jumps.mat.cols; ++x) {
+      const bool doubted = dynamics.excluded_from_pose.covers(row, x) && !jumps.covers(row, x);
       pixels.others.mat(row, x) = doubted ? 0 : 255;
       pixels.trust(row, x) = trust[dynamics.judged.mask.extended.mat(row, x)];
     }

@@ -66,16 +66,15 @@ struct FrameDynamics {
   FrameObjects objects;
   DynamicsResult judged;  ///< `judged.states` in the order of the objects
   Mask excluded;  ///< pixels that are not static surface for the map: `judged.mask` and a margin
-  /// Pixels that no feature may have: the same without what has stood still since it was first
+  /// Pixels that no feature may have: `excluded` without objects that have stood still since first
   /// seen.
   Mask excluded_from_pose;
-  /// Per object, how likely it is static, in [0, 1]; 0 for what is known to move. Empty: the mode
-  /// doubts nothing.
+  /// Per object, how likely it is static, in [0, 1]; small for an object seen to move. Empty: the
+  /// mode doubts nothing.
   std::vector<float> trust = {};
 };
 
-/// The excluded pixels that are only doubted to be static: on dynamic objects that are not known to
-/// move.
+/// The excluded pixels on dynamic objects: whether they are static is only doubted.
 struct DoubtedPixels {
   Mask others;      ///< all pixels but these
   cv::Mat1f trust;  ///< of each of these
@@ -119,7 +118,7 @@ class DynamicsStage {
       const std::optional<Eigen::Isometry3d>& T_odometry_camera_expected);
 
   /// The states of the objects with their motion, for a frame with a pose. To be called with the
-  /// own objects of each frame that has any, in the order of the frames.
+  /// objects found in each frame, if any, in the order of the frames; not with carried objects.
   [[nodiscard]] virtual std::vector<ObjectState> with_motion(
       const RgbdFrame& frame,
       const Eigen::Isometry3d& T_odometry_camera,

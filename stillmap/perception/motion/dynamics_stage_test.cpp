@@ -23,7 +23,7 @@ const CameraModel& small_camera() {
 
 const cv::Rect kPerson(60, 20, 40, 90);
 
-// A wall 3 m before the camera, with somebody at 1.5 m before it if wanted.
+// A wall 3 m from the camera, optionally with a person at 1.5 m.
 RgbdFrame wall(bool with_person) {
   RgbdFrame frame;
   frame.depth = DepthImage(cv::Mat1f(120, 160, 3.0F));
@@ -46,13 +46,13 @@ bool person_is_out(const FrameDynamics& dynamics) {
 
 using Pose = std::optional<Eigen::Isometry3d>;
 
-// At the world's origin, or turned about so that nothing of the wall is seen.
+// A camera at the world's origin, turned so that the wall is in view or not.
 Eigen::Isometry3d turned(double degrees) {
   return make_pose(so3_exp(Eigen::Vector3d(0, degrees * 3.14159265358979 / 180, 0)),
                    Eigen::Vector3d::Zero());
 }
 
-// The person's mask and nobody there: the wall stands where it has stood.
+// A false person: the mask lies on the wall, whose depth is unchanged.
 class DoubtedPerson : public testing::Test {
  protected:
   FrameDynamics look(float score, const std::string& name = "person") {
@@ -152,7 +152,7 @@ TEST_F(DynamicsStageWhenLost, TheNetworksPeopleAreOutWithoutAPose) {
 
 TEST_F(DynamicsStageWhenLost, WhoIsMissedIsSeenByWhatWasThereBefore) {
   EXPECT_FALSE(person_is_out(judge(wall(true), {}, std::nullopt)));
-  // Found again in a frame that has him already, so that this frame tells nothing.
+  // Relocalised in a frame that shows the person already, so that this frame tells nothing.
   const FrameDynamics found = judge(wall(true), {}, std::nullopt);
   stage_->remember(wall(true), turned(0), found);
   EXPECT_TRUE(person_is_out(judge(wall(true), {}, turned(0))));

@@ -15,11 +15,11 @@
 namespace stillmap {
 namespace {
 
-constexpr int kRoomFeatures = 120;  // outside of the box, all standing
-constexpr int kBoxFeatures = 40;    // inside: the first half moves, the other stands
+constexpr int kRoomFeatures = 120;  // outside the box, all static
+constexpr int kBoxFeatures = 40;    // inside: the first half moves, the other is static
 const PixelBox kBox{400, 100, 560, 380};
 
-/// Two frames of a made room: a camera that slides, points that stand and points that move.
+/// Two frames of a synthetic room: a sliding camera, static points and moving points.
 struct TwoFrames {
   CameraModel camera = builtin_camera("tum_fr3");
   Eigen::Isometry3d T_current_previous =
@@ -111,7 +111,7 @@ TEST(MatchConsecutive, SearchesNoFartherThanTold) {
                                                               two.T_current_previous,
                                                               2,
                                                               StaticMatchesConfig{}.match);
-  // What stands is where it should be; what moves goes at least 0.05 m * 525 / 3.5 m = 7 pixels.
+  // Static points are in place; the others move at least 0.05 m * 525 / 3.5 m = 7 pixels.
   EXPECT_EQ(matches.size(), static_cast<std::size_t>(kRoomFeatures + kBoxFeatures / 2));
 }
 
@@ -125,7 +125,7 @@ TEST(FeatureFilter, PaperDropsWhatMovesInABoxAndNothingThatStands) {
             static_cast<std::size_t>(kBoxFeatures / 2));
   EXPECT_EQ(count(filtered, FeatureVerdict::kStable), static_cast<std::size_t>(kRoomFeatures));
   EXPECT_EQ(filtered.features.size(), filtered.verdicts.size());
-  // The moving ones are those just before the last of all features.
+  // The moving features directly follow those of the room.
   for (const RejectedFeature& dropped : filtered.dropped) {
     const auto at = std::ranges::find(two.current.raw_px, dropped.raw_px);
     const auto index = at - two.current.raw_px.begin();
@@ -165,13 +165,13 @@ TEST(FeatureFilter, FullJudgesBoxesOnlyWhenTold) {
             static_cast<std::size_t>(kBoxFeatures / 2));
 }
 
-// A step of a metre through one feature's surroundings, and a hole in another's.
+// A depth step of 1 m beside one feature, and a hole beside another.
 struct DepthFaults {
   TwoFrames two = two_frames();
   std::size_t jump = 5, hole = 9;
 
   DepthFaults() {
-    // Steady depth varies a little, as any sensor's does.
+    // Stable depth varies slightly, as that of any sensor.
     TestDice dice(11);
     for (float& z : two.depth.mat) z += dice.uniform(-0.004F, 0.004F);
     const auto pixel = [&](std::size_t i) {

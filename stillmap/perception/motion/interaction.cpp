@@ -12,7 +12,7 @@ Contact contact_of(const ContactParty& object, const ContactParty& person) {
   return object.depths->overlaps(*person.depths) ? Contact::kTouching : Contact::kDepthsApart;
 }
 
-/// Greater wins: what is certain before what may be, and either before what is not.
+/// The greater weight wins: certain contact before possible contact, and that before none.
 int weight(Contact contact) {
   switch (contact) {
     case Contact::kTouching:

@@ -33,7 +33,7 @@ TEST(Interaction, BeforeOrBehindIsApart) {
 }
 
 TEST(Interaction, DepthsThatMeetInAPointTouch) {
-  // Eq. (9) calls apart only what is strictly so.
+  // By Eq. (9), intervals are apart only if strictly so.
   const std::vector<ContactParty> people{{{150, 50, 300, 200}, DepthInterval{2.0F, 2.6F}}};
   EXPECT_EQ(judge_interaction(kChair, people).contact, Contact::kTouching);
 }

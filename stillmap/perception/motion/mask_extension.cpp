@@ -26,7 +26,7 @@ PixelPatch paper_extension(const ObjectView& object,
   const double pixels_at_reference =
       static_cast<double>(area.pixels) * kReferencePixels / static_cast<double>(image.area());
   const bool whole_box = pixels_at_reference < config.whole_box_px;
-  PixelPatch patch{box | area.bounds, {}};  // a mask may reach out of its box
+  PixelPatch patch{box | area.bounds, {}};  // a mask may extend beyond its box
   patch.pixels = cv::Mat1b(patch.area.size(), std::uint8_t{0});
   if (whole_box && !box.empty()) patch.pixels(box - patch.area.tl()).setTo(1);
   const DepthInterval within = depths.interval.value_or(DepthInterval{0.0F, 0.0F});
@@ -43,7 +43,7 @@ PixelPatch paper_extension(const ObjectView& object,
   return patch;
 }
 
-/// The part of the image that may become the object's.
+/// The part of the image to which the object may grow.
 cv::Rect growth_area(const ObjectView& object, const MaskArea& area, double margin) {
   const cv::Size image = object.depth.mat.size();
   const double reach = margin * std::max(object.box.width(), object.box.height());

@@ -15,8 +15,8 @@ const cv::Size kImage(160, 120);
 constexpr int kId = 4;
 const PixelBox kBox{40, 10, 100, 110};
 
-/// Somebody before a wall at 3 m: a trunk at 2 m, and an arm held out to the right and forward,
-/// which the mask has not.
+/// A person before a wall at 3 m: a trunk at 2 m, and an arm held out to the right and forward,
+/// which the mask lacks.
 struct Scene {
   DepthImage depth{cv::Mat1f(kImage, 3.0F)};
   ObjectMask mask{cv::Mat1b(kImage, std::uint8_t{0})};
@@ -54,7 +54,7 @@ bool has(const PixelPatch& patch, int x, int y) {
   return patch.area.contains({x, y}) && patch.pixels(y - patch.area.y, x - patch.area.x) != 0;
 }
 
-/// How many pixels of a rectangle a patch has.
+/// The number of a patch's pixels in a rectangle.
 int pixels_in(const PixelPatch& patch, const cv::Rect& where) {
   int count = 0;
   for (int y = where.y; y < where.y + where.height; ++y) {
@@ -188,7 +188,7 @@ TEST(ConnectedExtension, WhatIsSomebodyElsesDoesNotJoin) {
 }
 
 TEST(ConnectedExtension, WhatIsKnownToStandStillDoesNotJoin) {
-  // A shelf touches the trunk at its depth, where it was before somebody came.
+  // A shelf touches the trunk at the trunk's depth; it was there before the person.
   const Scene scene;
   cv::Mat1f known(60, 80, 0.0F);
   for (int row = 0; row < known.rows; ++row) {
@@ -200,7 +200,7 @@ TEST(ConnectedExtension, WhatIsKnownToStandStillDoesNotJoin) {
   config.grow_px = 80;
   EXPECT_EQ(pixels_in(scene.extended(config), scene.arm), scene.arm.area());
   EXPECT_EQ(pixels_in(scene.extended(config, HalfDepth(known)), scene.arm), 0);
-  known += 0.1F;  // something else was there
+  known += 0.1F;  // another surface was there
   EXPECT_EQ(pixels_in(scene.extended(config, HalfDepth(known)), scene.arm), scene.arm.area());
 }
 
@@ -243,7 +243,7 @@ TEST(ConnectedExtension, SomethingInsideThatIsAnothersIsNoHole) {
 }
 
 TEST(ConnectedExtension, ASmallMaskOnALargeSurfaceDoesNotGrow) {
-  // A false person on the wall: what grows from it would mostly be wall.
+  // A false person on the wall: growth from it would be mostly wall.
   Scene scene;
   scene.mask.mat.setTo(0);
   const cv::Rect speck(120, 50, 8, 8);

@@ -13,10 +13,10 @@ namespace {
 // A mode is a row of this table and nothing else. A mode that needs a new rule adds an enumerator
 // to the rule's type and a branch to the stage that reads it.
 //
-// `off` and `mask` remove nothing from the map: they serve comparison. `paper` has the thresholds
+// `off` and `mask` remove nothing from the map: they are for comparison. `paper` has the thresholds
 // of Fan 2020. In `full` the threshold of depth edges grows with depth, as the sensor's noise does,
-// because a fixed threshold removes far walls. Instead of islands, which are mostly legs of chairs
-// or surface seen between people, `full` removes points that later views see through.
+// because a fixed threshold removes far walls. Instead of islands, which are mostly chair legs or
+// surface seen between people, `full` removes points that later views see through.
 constexpr std::array kModes = {
     DynamicsMode{.name = "off",
                  .meaning = "motion is ignored: SLAM for a static world",

@@ -57,7 +57,7 @@ struct DynamicsMode {
   bool interaction = false;
   JumpRule jumps = JumpRule::kNone;
   bool motion = false;  ///< an object that is observed to move is dynamic
-  /// a dynamic object that is not observed to move may carry the pose where the rest is not enough
+  /// features on dynamic objects may contribute to the pose where the rest is not enough
   bool doubts = false;
   /// Fan 2020, section III-C; else as dynamics.tracker says
   bool fills_after_one_sighting = false;

@@ -21,7 +21,7 @@ double lower_median(std::vector<double> values) {
   return *middle;
 }
 
-/// The column, or row, with half of all before it.
+/// The median column or row of a histogram.
 int median_place(const std::vector<int>& counts, int total) {
   int before = 0, place = 0;
   while (before + counts[static_cast<std::size_t>(place)] <= (total - 1) / 2) {
@@ -30,7 +30,7 @@ int median_place(const std::vector<int>& counts, int total) {
   return place;
 }
 
-/// The middle pixel of an id where it has depths of an interval; nothing where it has none.
+/// The middle of the pixels of an id with depths in the interval; nothing where there are none.
 std::optional<Eigen::Vector2d> middle_pixel(const ObjectMask& mask,
                                             int id,
                                             const cv::Rect& area,
@@ -67,13 +67,13 @@ RobustVelocity robust_velocity(std::span<const double> stamps_s,
   const std::size_t n = positions.size();
   STILLMAP_CHECK(n >= 2 && stamps_s.size() == n);
   RobustVelocity result;
-  double spread = 0, scatter = 0;  // squared: of the stamps, and of the positions about the line
+  double spread = 0, scatter = 0;  // sums of squares: stamps, and positions about the line
   const double middle_s = (stamps_s.front() + stamps_s.back()) / 2;
   for (const double stamp : stamps_s) spread += (stamp - middle_s) * (stamp - middle_s);
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<double> slopes;
     for (std::size_t i = 0; i < n; ++i) {
-      for (std::size_t j = i + (n + 1) / 2; j < n; ++j) {  // neighbours say little but noise
+      for (std::size_t j = i + (n + 1) / 2; j < n; ++j) {  // near ones differ mostly by noise
         slopes.push_back((positions[j][axis] - positions[i][axis]) / (stamps_s[j] - stamps_s[i]));
       }
     }
@@ -154,7 +154,7 @@ double MotionEstimator::vacated(const Position& old, const View& view, int id) c
     const double noise = 3 * config_.depth_noise_per_m * p.z() * p.z();
     const bool same = std::abs(change) <= config_.vacated_m + noise;
     there += same ? 1 : 0;
-    // Nearer depth hides the surface, unless it is the object itself that came nearer.
+    // Nearer depth hides the surface, unless the object itself came nearer.
     if (!same && (change > 0 || view.objects.mask.mat(row, x) == id)) ++gone;
   }
   return gone == 0 ? 0.0 : static_cast<double>(gone) / (gone + there);
@@ -189,7 +189,7 @@ RobustVelocity MotionEstimator::velocity_of(const Track& track) const {
 }
 
 void MotionEstimator::add_position(Track& track, Position position) const {
-  // After a long time out of sight nothing is known of the way here.
+  // After a long time out of sight the path to this position is unknown.
   const double last_s = track.positions.empty() ? position.stamp_s : track.positions.back().stamp_s;
   if (position.stamp_s - last_s > kLongestGap_s) track.positions.clear();
   track.positions.push_back(std::move(position));

@@ -95,8 +95,8 @@ struct RobustVelocity {
 /// the scatter around it, at least that of depth noise. A far object, or one with a flickering
 /// mask, must therefore be faster to count as moving. It must also have vacated a part of its
 /// surface of some frames ago: the camera now sees farther there, or another part of the object. An
-/// object that is gradually covered, or cut off by the border of the image, does not count as
-/// moving. Filled boxes are no evidence.
+/// object that is gradually occluded, or cut off by the border of the image, does not count as
+/// moving. Filled boxes are not used.
 class MotionEstimator {
  public:
   MotionEstimator(const MotionStateConfig& config, const CameraModel& camera);
@@ -111,8 +111,8 @@ class MotionEstimator {
 
   /// The tracks that move in the last frame, by number.
   [[nodiscard]] std::vector<TrackId> moving() const;
-  /// The tracks that have stood still against the map for long, and ever since they were first
-  /// seen; by number.
+  /// The tracks that have stood still for long, without interruption since they were first seen; by
+  /// number.
   [[nodiscard]] std::vector<TrackId> standing() const;
 
  private:
@@ -134,7 +134,7 @@ class MotionEstimator {
     bool moving = false, known = false;
     int calm = 0;           // number of consecutive slow frames
     int stood = 0;          // number of frames in which its surface was where it had been
-    bool has_left = false;  // its first place, or a part of it
+    bool has_left = false;  // its first position, or a part of it
     double last_seen_s = 0;
   };
 

@@ -19,7 +19,7 @@
 namespace stillmap {
 namespace {
 
-constexpr int kSize = 40;  // of the square that stands for an object, pixels
+constexpr int kSize = 40;  // of the square that represents an object, pixels
 
 /// A frame in which a square, facing the camera, has its middle at a point of the world.
 struct Snapshot {
@@ -143,7 +143,7 @@ TEST(MotionEstimator, WhatHasStoodSinceItWasFirstSeenStands) {
     EXPECT_EQ(states.standing().size(), i < 4 + 19 ? 0U : 1U) << i;
   }
   Eigen::Vector3d place(0.1, 0.0, 2.5);
-  for (int i = 60; i < 160; ++i) {  // it goes away, and stands elsewhere for long
+  for (int i = 60; i < 160; ++i) {  // it leaves, then stands elsewhere for long
     if (i < 80) place.x() -= 0.6 / 30.0;
     (void)feed(states, look(i, place, camera_at(i)));
     if (i <= 70) continue;

@@ -12,7 +12,7 @@
 namespace stillmap {
 namespace {
 
-// A guessed translation that is shorter than this gives no line worth the name.
+// A predicted translation shorter than this does not determine an epipolar line.
 constexpr double kShortGuessM = 0.005;
 
 TwoViewGeometry guessed_geometry(const CameraModel& camera,
@@ -44,7 +44,7 @@ std::optional<Eigen::Matrix3d> pure_rotation(const CameraModel& camera,
   return R;
 }
 
-/// Whether the point is where it would be if it had stood still.
+/// Whether the point is where a static point would be.
 bool stands_still(const CameraModel& camera,
                   const Eigen::Isometry3d& T_current_previous,
                   const PointMatch& match,
@@ -78,7 +78,7 @@ TwoViewGeometry estimate_two_view(
   geometry.R = pure_rotation(camera, environment, config.min_parallax_px);
   std::vector<PointMatch> fitting(environment.begin(), environment.end());
   if (!geometry.R) {
-    // The bound is that of a good match, whatever is asked of those to be judged.
+    // The bound is that of a good match, independent of the bound for judged matches.
     const std::optional<FundamentalEstimate> estimate =
         estimate_fundamental(environment, config.inlier_px, config.iterations, rng);
     if (!estimate || estimate->inliers < config.min_environment) {

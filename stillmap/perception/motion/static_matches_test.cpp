@@ -14,7 +14,7 @@
 namespace stillmap {
 namespace {
 
-/// A made room: points 1.5 to 4 m before a camera that moves by a known motion.
+/// A synthetic room: points 1.5 to 4 m before a camera with a known motion.
 class TwoViews {
  public:
   explicit TwoViews(const Eigen::Isometry3d& T_current_previous, double noise_px = 0.2)
@@ -154,8 +154,8 @@ TEST(StaticMatches, WhatStandsAndWhatCrossesTheLinesIsToldApart) {
   }
 }
 
-// The epipolar lines of a camera going ahead meet in the middle: a person that comes towards it
-// walks along them.
+// The epipolar lines of a camera that moves forward meet in the middle: a person who approaches
+// moves along them.
 TEST(StaticMatches, MotionAlongTheLineIsSeenByDepthAlone) {
   TwoViews views(kAhead);
   const std::vector<PointMatch> room = views.room(150);

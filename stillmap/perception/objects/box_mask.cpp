@@ -21,12 +21,12 @@ namespace {
 constexpr int kLeastSide_px = 16;     // of a box
 constexpr int kMostCells = 96;        // along the longer side of a box
 constexpr double kMargin = 0.08;      // around a box, as a share of its side
-constexpr float kNearest_m = 0.2F;    // depths are told apart from here on
+constexpr float kNearest_m = 0.2F;    // depth at which the first layer begins
 constexpr double kLayerWidth = 0.04;  // of a class of depths, as a share of the depth
 constexpr std::size_t kLayers = 110;  // up to 15 m
-constexpr double kWorthwhile = 0.5;   // share of the strongest layer that a nearer one must have
-constexpr float kThickness_m = 0.7F;  // an object reaches so far from its layer
-constexpr float kStepWay = 12;        // the way that a step beyond noise counts for, in cells
+constexpr double kWorthwhile = 0.5;   // least size of a nearer layer, as a share of the strongest
+constexpr float kThickness_m = 0.7F;  // greatest extent of an object from its layer
+constexpr float kStepWay = 12;        // path length of a depth step beyond noise, in cells
 
 enum class Side : std::uint8_t { kUndecided, kObject, kOther };
 
@@ -83,7 +83,7 @@ class CellGrid {
     mark_certain(layer_m);
     claim_enclosed_parts(layer_m);
     std::vector<float> way(side_.size(), std::numeric_limits<float>::infinity());
-    using Entry = std::pair<float, int>;  // the cell's number decides among equals
+    using Entry = std::pair<float, int>;  // cost and cell number, which breaks ties
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> next;
     for (int i = 0; i < size(); ++i) {
       if (at(side_, i) == Side::kUndecided || at(depth_, i) <= 0) continue;
@@ -154,7 +154,7 @@ class CellGrid {
 
   [[nodiscard]] static float noise(float z) { return 0.01F + 0.003F * z * z; }
 
-  /// A seat below an arm, a leg: parts that end inside the box, as floors and walls do not.
+  /// Adds parts that end inside the box, as floors and walls do not: a seat below an arm, a leg.
   void claim_enclosed_parts(float layer_m) {
     std::vector<std::uint8_t> seen(side_.size(), 0);
     std::vector<int> part;
@@ -246,7 +246,7 @@ std::vector<bool> complete_masks(FrameDetections& detections,
   std::ranges::stable_sort(
       order, std::ranges::greater{}, [&](std::size_t i) { return detections.objects[i].score; });
   std::vector<bool> completed(detections.objects.size(), false);
-  bool own = false;  // the mask's pixels may be somebody else's
+  bool own = false;  // the mask's pixels may be shared with the caller
   for (const std::size_t i : order) {
     const DetectedObject& object = detections.objects[i];
     if (areas[static_cast<std::size_t>(object.id)].pixels > 0) continue;

@@ -13,8 +13,8 @@ namespace {
 const cv::Rect kThing(250, 150, 120, 150);
 const PixelBox kBox{248, 149, 372, 302};
 
-/// A room with a wall at 4 m and a floor that comes nearer below, and in it a thing at 2 m that
-/// stands on the floor: where it ends, floor and thing have one depth.
+/// A room with a wall at 4 m and a floor that comes nearer below, and an object at 2 m on the
+/// floor: at its foot, floor and object have the same depth.
 DepthImage room_with_thing() {
   DepthImage depth(cv::Mat1f(480, 640, 4.0F));
   for (int row = 200; row < 480; ++row) {
@@ -51,7 +51,7 @@ TEST(MaskFromDepth, HasPartsThatOnlyTheBoxTiesTogether) {
 
 TEST(MaskFromDepth, LeavesOutWhatIsBehindAndBefore) {
   DepthImage depth = room_with_thing();
-  const cv::Rect pole(300, 0, 16, 480);  // somebody's leg passes before it
+  const cv::Rect pole(300, 0, 16, 480);  // a person's leg passes before it
   cv::Mat1f(depth.mat, pole).setTo(0.8F);
   const PixelPatch patch = mask_from_depth(depth, {}, kBox);
   const cv::Mat1b on_pole =

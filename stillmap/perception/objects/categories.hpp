@@ -12,9 +12,9 @@
 namespace stillmap {
 
 /// The classes of two categories: names that coco_name() knows, separated by commas. Every other
-/// class is static. By default every class of COCO is where it belongs, static on purpose: what is
-/// built in or too heavy to carry (traffic light, fire hydrant, stop sign, parking meter, bed,
-/// dining table, toilet, tv, microwave, oven, toaster, sink, refrigerator).
+/// class is static. By default every COCO class has a category. Static are those that are built in
+/// or too heavy to carry (traffic light, fire hydrant, stop sign, parking meter, bed, dining table,
+/// toilet, tv, microwave, oven, toaster, sink, refrigerator).
 struct CategoryConfig {
   std::string dynamic = "person, bird, cat, dog, horse, sheep, cow, elephant, bear, zebra, giraffe";
   std::string potentially_dynamic =
@@ -46,15 +46,15 @@ struct CategoryConfig {
 /// The category of each class. A class has the same category under all its names.
 class CategoryTable {
  public:
-  /// Throws Error, with the key and the name, for a name that COCO does not have, an empty name,
-  /// a repeated name, and a synonym that is the name of a class already.
+  /// Throws Error, with the key and the name, for a name that COCO does not have, an empty name, a
+  /// repeated name, and a synonym that already is the name of a class.
   explicit CategoryTable(const CategoryConfig& config);
 
   /// The category of a class; static for a class in no list.
   [[nodiscard]] Category of(std::string_view class_name) const;
 
-  /// Whether a class is one of COCO's, by one of its names or by a synonym. Others are static only
-  /// because nobody knows them.
+  /// Whether a class is one of COCO's, by one of its names or by a synonym. Other classes are
+  /// static only because they are unknown.
   [[nodiscard]] bool knows(std::string_view class_name) const;
 
  private:

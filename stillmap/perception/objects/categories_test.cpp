@@ -24,7 +24,7 @@ TEST(Categories, DefaultsSortTheClassesOfAnOffice) {
   EXPECT_EQ(table.of("dining table"), Category::kStatic);
 }
 
-// Nothing is static because it was forgotten.
+// No class is static by omission.
 TEST(Categories, EveryStaticClassOfCocoIsBuiltInOrHeavy) {
   const CategoryTable table{CategoryConfig{}};
   std::vector<std::string_view> fixed;

@@ -97,7 +97,7 @@ MaskAreas mask_areas(const ObjectMask& mask) {
     for (int x = 0; x < ids.cols;) {
       const std::uint8_t id = line[x];
       const int begin = x;
-      if (id == 0) {  // most pixels have no object: skips eight at a time
+      if (id == 0) {  // most pixels belong to no object: skips eight at a time
         std::uint64_t eight = 0;
         while (x + 8 <= ids.cols && (std::memcpy(&eight, line + x, 8), eight == 0)) x += 8;
       }

@@ -8,7 +8,7 @@
 namespace stillmap {
 namespace {
 
-// Width times height of a large one. A person of 2 m with both arms held out covers 1.1 m^2.
+// Width times height of a large object. A person of 2 m with both arms held out covers 1.1 m^2.
 constexpr std::array<std::pair<std::string_view, double>, 17> kLargest_m2 = {{
     {"airplane", 1000},
     {"bed", 5},

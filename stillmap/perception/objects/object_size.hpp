@@ -10,7 +10,7 @@
 namespace stillmap {
 
 /// The area that the silhouette of an object of a class (its COCO name) has at most, from any side,
-/// in square metres: generous, for telling an object from the furniture and walls around it.
+/// in square metres: generous, to separate objects from furniture and walls.
 [[nodiscard]] double largest_silhouette_m2(std::string_view class_name);
 
 /// The area of the silhouette of a patch, in square metres, by the depths of every second pixel in

@@ -19,7 +19,7 @@ enum class Category : std::uint8_t {
   kDynamic,             ///< moves by itself
 };
 
-/// The category in words, as the object log has it.
+/// The category in words, as in the object log.
 [[nodiscard]] std::string_view category_name(Category category);
 
 /// An interval of depths, metres.
@@ -46,7 +46,7 @@ enum class StateReason : std::uint8_t {
   kDepthUnknown,  ///< dynamic: a person may interact with it
   kMoving,        ///< dynamic: it was observed to move
 };
-/// The reason in words, as the object log has it.
+/// The reason in words, as in the object log.
 [[nodiscard]] std::string_view reason_name(StateReason reason);
 
 /// What is known of an object's motion.
@@ -56,7 +56,7 @@ enum class MotionState : std::uint8_t {
   kMoving,          ///< by itself, as far as is known
   kMovedBySomeone,  ///< moving, and a person interacts with it
 };
-/// The state in words, as the object log has it.
+/// The state in words, as in the object log.
 [[nodiscard]] std::string_view motion_name(MotionState state);
 
 /// The motion of an object, in the world frame of the frame's pose.

@@ -230,8 +230,8 @@ std::optional<ObjectTracker::Fill> ObjectTracker::fill_of(const Track& track,
   return fill;
 }
 
-// The object is there under the name of the track, or under another name of which the network is
-// much surer.
+// The object was detected under the class of the track, or under another class with a much higher
+// score.
 bool ObjectTracker::is_duplicate(const Track& track, const Fill& fill, const Held& held) const {
   constexpr float kSurer = 1.5F;
   const float score = fill.nearest.held->frame.detections.objects[fill.nearest.object].score;

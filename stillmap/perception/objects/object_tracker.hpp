@@ -69,7 +69,7 @@ enum class FillRule : std::uint8_t {
 /// Tracks objects over frames and fills in objects that the network missed (Fan 2020, section
 /// III-C).
 ///
-/// Objects of which the network gives the box alone get a mask by depth (mask_from_depth()).
+/// Objects for which the network gives only a box get a mask by depth (mask_from_depth()).
 ///
 /// A detection continues a track of its class when its box overlaps with the predicted box of the
 /// track; the best overlaps are taken first. The same input gives the same bits. With kBothWays a
@@ -93,7 +93,7 @@ class ObjectTracker {
   [[nodiscard]] std::vector<FrameObjects> flush();
 
   /// The objects of a frame that the network did not see, later than all pushed frames: the recent
-  /// objects of those, each filled in. With kCausal only.
+  /// objects of the pushed frames, each filled in. With kCausal only.
   [[nodiscard]] FrameObjects carry_to(FrameId frame,
                                       const Stamp& stamp,
                                       const DepthImage& depth) const;

@@ -68,7 +68,7 @@ std::vector<ObservedFrame> walker(std::size_t frames, const std::vector<std::uin
     std::vector<Seen> objects;
     if (seen) objects.push_back({"person", box_at(3.0 * i)});
     result.push_back(frame_of(i, objects));
-    // Who is not detected is there all the same.
+    // The person is there also when not detected.
     if (!seen) result.back().depth.mat(pixels_of(box_at(3.0 * i), {kWidth, kHeight})).setTo(1.0F);
   }
   return result;
@@ -197,7 +197,7 @@ TEST(ObjectTracker, CausalRuleGoesOnAtTheVelocityForThreeFrames) {
   EXPECT_TRUE(out[8].objects.empty());
 }
 
-// Every third frame is looked at; the others are where the velocity puts the box.
+// The network sees every third frame; in the others the box is where its velocity puts it.
 TEST(ObjectTracker, CarriesToFramesThatNobodyLookedAt) {
   ObjectTracker tracker({}, FillRule::kCausal);
   const std::vector<ObservedFrame> frames = walker(12, {});
@@ -210,7 +210,7 @@ TEST(ObjectTracker, CarriesToFramesThatNobodyLookedAt) {
     }
     const FrameObjects carried =
         tracker.carry_to(frames[i].id, frames[i].detections.stamp, frames[i].depth);
-    ASSERT_EQ(carried.objects.size(), 1U) << i;  // also when it was seen but once
+    ASSERT_EQ(carried.objects.size(), 1U) << i;  // also when it was seen only once
     const TrackedObject& object = carried.objects[0];
     const auto looked_at = static_cast<std::uint32_t>(i - i % 3);
     EXPECT_EQ(object.filled, (BoxOrigin{FrameId(looked_at), std::nullopt}));
@@ -222,7 +222,7 @@ TEST(ObjectTracker, CarriesToFramesThatNobodyLookedAt) {
   }
 }
 
-// What the last look has missed is carried on from the look before, when it was seen twice.
+// An object that the network missed last is carried from its frame before, if seen twice.
 TEST(ObjectTracker, CarriesWhatTheLastLookMissed) {
   ObjectTracker tracker({}, FillRule::kCausal);
   const std::vector<ObservedFrame> frames = walker(8, {6});
@@ -261,7 +261,7 @@ TEST(CarryMask, KeepsWhatFitsInDepthAndMovesAndScales) {
   mask.mat(cv::Rect(10, 10, 10, 10)).setTo(3);
   DepthImage now = flat_depth(1.1F);
   now.mat(cv::Rect(30, 20, 10, 20)).setTo(3.0F);
-  now.mat(20, 45) = 0.0F;  // missing: nothing says that it does not fit
+  now.mat(20, 45) = 0.0F;  // missing: does not contradict
   const ObjectView from{before, mask, 3, {10, 10, 20, 20}};
   const PropagatedMask carried =
       propagate_mask(from, mask_areas(mask)[3], {30, 20, 50, 40}, now, {});
@@ -328,7 +328,7 @@ std::vector<ObservedFrame> detections_with_gaps(const TruthSequence& data,
 struct FillScore {
   int boxes = 0, found = 0;
   double filled = 0;  // sums of overlaps
-  double held = 0;    // what the last box seen would have given
+  double held = 0;    // for comparison: overlaps of the last detected box
 };
 
 FillScore score_fills(const std::vector<FrameObjects>& out,
@@ -353,7 +353,7 @@ FillScore score_fills(const std::vector<FrameObjects>& out,
   return score;
 }
 
-// The boxes of the truth, with two of every seven frames taken away.
+// The true boxes, with two of every seven frames removed.
 TEST(ObjectTracker, FillsTheBoxesOfPeopleOnTruth) {
   for (const char* name : {"twin_walking_xyz", "fr1_xyz_walkers"}) {
     STILLMAP_NEED_SHARED_DATA(name);

@@ -51,7 +51,7 @@ TEST(SuppressOverlaps, DropsWhatIsNoBox) {
               testing::IsEmpty());
 }
 
-// What stays does not overlap, and whatever went overlaps something better that stayed.
+// Kept boxes do not overlap, and every dropped box overlaps a better one that was kept.
 TEST(SuppressOverlaps, PropertiesOnRandomBoxes) {
   std::mt19937 random(3);
   const auto draw = [&](int end) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The detectors' decoders, on tensors worked out by hand.
+// The detectors' decoders, on tensors computed by hand.
 #include <cmath>
 
 #include <gmock/gmock.h>
@@ -151,7 +151,7 @@ TEST(Detr, RefusesWhatDoesNotFit) {
 }
 
 struct SsdCase {
-  // As shares of the input: one of a quarter's size in the upper left, one in the middle.
+  // As shares of the input: one of a quarter of its area in the upper left, one in the middle.
   Tensor anchors{{2, 4}, {0, 0, 0.5F, 0.5F, 0.25F, 0.25F, 0.5F, 0.5F}};
   Tensor offsets = zeros({1, 2, 4});
   Tensor classes{{1, 2, 3}, {1, 0, 0, 0.2F, 0.1F, 0.7F}};

@@ -19,8 +19,8 @@ constexpr std::array<std::string_view, 20> kVoc = {
     "cat",       "chair",       "cow",   "diningtable", "dog",    "horse",    "motorbike",
     "person",    "pottedplant", "sheep", "sofa",        "train",  "tvmonitor"};
 
-// The names of a number of classes: those in the network's metadata, else those of COCO or VOC.
-// Nothing if neither has as many. An open number goes with what there is.
+// The names of `classes` classes: those in the network's metadata, else those of COCO or VOC.
+// Nothing if none has this number. Names in the metadata decide an open number.
 std::optional<std::vector<std::string>> names_of(const std::vector<std::string>& given,
                                                  const ExportReading& reading) {
   const std::size_t background = reading.with_background ? 1 : 0;

@@ -37,7 +37,7 @@ std::string refusal(const std::vector<TensorShape>& outputs, const std::string& 
   return error_of([&] { (void)identify(outputs, names); });
 }
 
-// What the values of a network's only output decide.
+// The refusal of a network's only output by its values.
 std::string refusal_of_values(const Tensor& output, const std::string& names = "") {
   return error_of([&] {
     (void)identify_export(with_input({1, 3, 640, 640}, names), {output}, kInput);
@@ -88,7 +88,7 @@ TEST(IdentifyExport, ClassMap) {
               ElementsAre("background", "person"));
 }
 
-// More classes than a coarse map has rows: the plane is what has the input's aspect ratio.
+// More classes than the coarse map has rows: the plane is recognised by the input's aspect ratio.
 TEST(IdentifyExport, ClassMapOfManyClasses) {
   std::string names;
   for (int i = 0; i < 150; ++i) names += "'c" + std::to_string(i) + "', ";

@@ -153,9 +153,9 @@ std::string refusal_of(const Decode& decode) {
   }
 }
 
-// Among the boxes of an empty image, most of them of nothing, some are large.
+// Among the boxes of an empty image, most of which hold no object, some are large.
 std::string yolo_problem(const NetworkExport& network, const std::vector<Tensor>& outputs) {
-  constexpr float kLeastScore = 1e-6F;  // rows of nothing may have no class
+  constexpr float kLeastScore = 1e-6F;  // rows without an object may have no class
   constexpr double kLargestShare = 2;
   std::vector<Candidate> boxes;
   std::string refusal = refusal_of([&] {

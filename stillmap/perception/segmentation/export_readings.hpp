@@ -23,8 +23,8 @@ struct ExportReading {
 [[nodiscard]] std::vector<ExportReading> readings_of(const std::vector<Tensor>& outputs,
                                                      cv::Size input);
 
-/// What in the values contradicts a kind, in words: "a score of 7.5, expected ..."; empty if
-/// nothing does. `network` has its names.
+/// The contradiction of a kind by the values, in words: "a score of 7.5, expected ..."; empty if
+/// there is none. `network` has its names.
 [[nodiscard]] std::string contradiction(const NetworkExport& network,
                                         const std::vector<Tensor>& outputs);
 

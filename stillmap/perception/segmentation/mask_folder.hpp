@@ -9,12 +9,12 @@
 
 namespace stillmap {
 
-/// Gives the people of a folder of plain masks, made by any program: one 8-bit PNG an image, 0 for
+/// Reads people from a folder of plain masks, made by any program: one 8-bit PNG per image, 0 for
 /// the background and one other value (1, 255) for people, named as the image or as its stamp.
 ///
-/// Each connected region of at least 50 pixels is a person with a box of its own. One object of all
-/// regions would have a box from one person to the next and the depths of everybody, and all that
-/// stands between them would count as touched by a person.
+/// Each connected region of at least 50 pixels is one person. A single object of all regions would
+/// have a box across all people and the depths of all of them, and every object between them would
+/// count as touched by a person.
 class MaskFolder : public Segmenter {
  public:
   /// `image` is the size of the images, `names` as in SegmenterOptions. Throws Error for a folder

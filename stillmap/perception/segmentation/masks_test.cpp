@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a network's planes to the masks of objects, on small planes worked out by hand.
+// From a network's planes to the masks of objects, on small planes computed by hand.
 #include <cmath>
 
 #include <gmock/gmock.h>
@@ -27,7 +27,7 @@ Tensor zeros(const TensorShape& shape) {
 
 const std::vector<std::string> kNames = {"background", "person", "chair"};
 
-// Logits of three classes on 6x4 pixels that say these labels.
+// Logits of three classes on 6x4 pixels that give these labels.
 Tensor logits_of(const cv::Mat1b& labels, bool channels_last) {
   const int area = static_cast<int>(labels.total());
   Tensor logits = zeros(channels_last ? TensorShape{1, labels.rows, labels.cols, 3}
@@ -104,7 +104,7 @@ TEST(WithClassPixels, AreThoseOfTheClassInTheBox) {
   EXPECT_EQ(objects[0].region, cv::Rect(3, 0, 2, 4));
   const cv::Mat1b expected = (cv::Mat1b(4, 2) << 0, 255, 0, 255, 0, 0, 255, 255);
   EXPECT_TRUE(same(objects[0].mask, expected));
-  EXPECT_TRUE(objects[1].mask.empty());  // the map does not know dogs
+  EXPECT_TRUE(objects[1].mask.empty());  // the map has no class dog
 }
 
 TEST(CropSquare, ByHand) {

@@ -25,7 +25,7 @@ namespace {
 
 constexpr double kMaxOverlap = 0.5;  // IoU of two boxes of a class
 constexpr double kMaxOverlapOfFinal =
-    0.9;  // the same of networks that suppress overlaps themselves
+    0.9;  // the same for networks that suppress overlaps themselves
 constexpr float kYoloScore = 0.25F;
 constexpr float kDetrScore = 0.3F;
 constexpr float kSsdScore = 0.4F;
@@ -147,7 +147,7 @@ std::vector<FoundObject> ImageNetwork::decode(const std::vector<Tensor>& outputs
 }
 
 std::vector<FoundObject> ImageNetwork::decode_map(const std::vector<Tensor>& outputs) const {
-  // What an empty image does not show, an image can: numbers of classes that have no name.
+  // A real image can reveal what an empty image does not: class numbers without a name.
   const std::string problem = contradiction(export_, outputs);
   if (!problem.empty()) throw Error("the network's output: {}", problem);
   return objects_of_class_map(

@@ -20,7 +20,7 @@ class ImageNetwork {
   ImageNetwork(std::unique_ptr<Network> network, cv::Size image);
 
   /// The objects in an image, with the thresholds of score and overlap that are usual for the kind.
-  /// Those of a kind that gives boxes only have no masks.
+  /// Objects have no masks if the kind gives boxes only.
   [[nodiscard]] std::vector<FoundObject> find(const ColorImage& color) const;
 
  private:
@@ -54,7 +54,7 @@ class NetworkSegmenter : public Segmenter {
 };
 
 /// A segmenter of two networks: a detector finds boxes, and a matting network finds the masks of
-/// people in them. A person of whom the matting network sees almost nothing is dropped.
+/// people in them. A person for whom the matting network finds almost no pixels is dropped.
 class PersonSegmenter : public Segmenter {
  public:
   /// `matting` takes a square crop and gives one value per pixel; values of at least `threshold`

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The segmenters around networks that are functions.
+// The segmenters, with functions in place of networks.
 #include "stillmap/perception/segmentation/network_segmenter.hpp"
 
 #include <functional>
@@ -43,7 +43,7 @@ ColorImage person_at(cv::Rect place) {
   return ColorImage(image);
 }
 
-// Finds a white pixel where its input, normalised as it may be, is positive.
+// A network that finds a person where its input, however normalised, is positive.
 Tensor person_where_positive(const Tensor& input) {
   const std::size_t area = input.values.size() / 3;
   Tensor logits = zeros({1, 21, input.shape[2], input.shape[3]});
@@ -135,7 +135,7 @@ PersonSegmenter person_segmenter(float person, float other) {
       kImage);
 }
 
-// The image fills the 64x64 input but for 8 rows above and below: the box is the whole image.
+// The image fills the 64x64 input except 8 rows above and below: the box is the whole image.
 TEST(PersonSegmenter, MaskIsOfTheMattingNetwork) {
   const cv::Rect place(16, 16, 32, 16);
   const FrameDetections found = person_segmenter(0.9F, 0).segment(person_at(place), kStamp);
@@ -144,7 +144,7 @@ TEST(PersonSegmenter, MaskIsOfTheMattingNetwork) {
   EXPECT_EQ(found.objects[0].box, (PixelBox{0, 0, 64, 48}));
   cv::Mat1b expected = cv::Mat1b::zeros(kImage);
   expected(place).setTo(1);
-  // The crop has two pixels of the image in one: its outline is met to a pixel.
+  // A pixel of the crop holds two of the image: the outline is accurate to one pixel.
   EXPECT_LT(cv::countNonZero(found.mask.mat != expected), 2 * (32 + 16) + 4);
   EXPECT_GT(cv::countNonZero(found.mask.mat), 30 * 14);
 }

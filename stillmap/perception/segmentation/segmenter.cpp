@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Gives the detections of a folder.
+// Reads the detections of a folder.
 class FolderSegmenter : public Segmenter {
  public:
   FolderSegmenter(const fs::path& folder, cv::Size image)
@@ -47,7 +47,7 @@ std::unique_ptr<Segmenter> make_person_segmenter(cv::Size image, const Segmenter
   return std::make_unique<PersonSegmenter>(std::move(detector), std::move(matting), kPerson, image);
 }
 
-// Calls what may fail; names the file in the message where that does not.
+// Makes the call; begins the message of an Error with the file where it does not yet.
 template <class Call>
 auto naming_file(const fs::path& file, const Call& call) {
   try {
@@ -58,7 +58,7 @@ auto naming_file(const fs::path& file, const Call& call) {
   }
 }
 
-// One network of a file.
+// The network of one file.
 class FileSegmenter : public Segmenter {
  public:
   FileSegmenter(fs::path file, cv::Size image, const SegmenterOptions& options)

@@ -29,11 +29,11 @@ class Segmenter {
                                                 const Stamp& stamp) const = 0;
 };
 
-/// What a segmenter may use.
+/// Options of a segmenter.
 struct SegmenterOptions {
   int threads = 2;  ///< number of threads for one run of a network
-  /// The names of the images' files without their ending, by the text of the images' stamps: masks
-  /// may be named after them. Images that are not in it are known by their stamp.
+  /// The names of the images' files without their extension, by the text of the images' stamps:
+  /// masks may be named after them. Images that are not listed are identified by their stamp.
   std::map<std::string, std::string> image_names = {};
 };
 

@@ -27,7 +27,7 @@ using testing::HasSubstr;
 
 const cv::Size kImage(640, 480);
 
-/// An environment variable of another value while it lives.
+/// Gives an environment variable another value during its lifetime.
 class Variable {
  public:
   Variable(const char* name, const std::string& value) : name_(name) {
@@ -128,7 +128,7 @@ std::string from_hex(std::string_view hex) {
   return bytes;
 }
 
-// Tests that run networks: skipped where ONNX Runtime is not there.
+// Tests that run networks: skipped where ONNX Runtime is missing.
 class OnnxNetworks : public testing::Test {
  protected:
   void SetUp() override {
@@ -183,8 +183,7 @@ TEST_F(OnnxNetworks, FailuresNameTheFile) {
               testing::AllOf(HasSubstr("sums.onnx: "), HasSubstr("expected a class map")));
 }
 
-// A network whose output is its image takes colours for classes: its names are those of red, green
-// and blue.
+// A network that returns its image has the colours as classes, named red, green and blue.
 TEST_F(OnnxNetworks, RunInHalfPrecision) {
   OnnxFile colours{{1, 3, 480, 640}, {{"map", {1, 3, 480, 640}, {}}}};
   colours.metadata = {{"names", "['background', 'person', 'chair']"}};
@@ -244,7 +243,7 @@ class FetchedNetworks : public OnnxNetworks {
   std::filesystem::path photos_;
 };
 
-// Both people in each of four photographs; their boxes as one sees them.
+// Both people in each of four photographs; the expected boxes were drawn by eye.
 TEST_F(FetchedNetworks, FindPeopleInPhotographs) {
   const std::unique_ptr<Segmenter> segmenter = make_segmenter("auto", kImage);
   int found = 0;

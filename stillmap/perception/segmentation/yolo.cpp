@@ -90,7 +90,7 @@ Candidate scored(const Yolo& yolo, std::size_t box) {
   return {static_cast<int>(best), score, box_of(yolo, box), static_cast<int>(box)};
 }
 
-// Rows that hold no object may have any whole number in the place of the class.
+// Rows without an object may have any whole number as class.
 Candidate final_row(const Yolo& yolo, std::size_t box, float min_score) {
   const float score = checked_score(yolo.at(box, 4)), label = yolo.at(box, 5);
   const bool counts = score >= min_score;

@@ -34,16 +34,15 @@ struct YoloOutputs {
 
 /// A candidate for the best class of each box with a score of at least `min_score`, in pixels of
 /// the input. `source` is the number of the box. Throws Error for shapes that do not fit `classes`,
-/// for scores outside [0, 1], and for class numbers that are none.
+/// for scores outside [0, 1], and for invalid class numbers.
 [[nodiscard]] std::vector<Candidate> decode_yolo_boxes(const YoloOutputs& outputs,
                                                        std::size_t classes,
                                                        float min_score);
 
-/// The objects of such candidates (in pixels of the input) with their masks, where there are
-/// prototypes. The mask has the
-/// pixels in the box at which the sum of the prototypes, weighted by the coefficients of the box
-/// and interpolated at the pixels of the image, is positive (a probability above 0.5). `names` are
-/// the class names.
+/// The objects of such candidates (in pixels of the input) with their masks if there are
+/// prototypes. The mask has the pixels in the box at which the sum of the prototypes, weighted by
+/// the coefficients of the box and interpolated at the pixels of the image, is positive (a
+/// probability above 0.5). `names` are the class names.
 [[nodiscard]] std::vector<FoundObject> yolo_objects(const YoloOutputs& outputs,
                                                     const std::vector<Candidate>& candidates,
                                                     const std::vector<std::string>& names,

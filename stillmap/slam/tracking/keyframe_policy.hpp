@@ -76,7 +76,7 @@ struct KeyframePolicyConfig {
 /// The frames since the last key frame.
 struct KeyframeAge {
   int frames = 0;        ///< number of processed frames
-  int most_inliers = 0;  ///< greatest number of inliers of any of them
+  int most_inliers = 0;  ///< greatest number of inliers in any of them
 };
 
 /// Whether a frame becomes a key frame. Depends on frame numbers and counts alone, never on time.

@@ -61,7 +61,7 @@ Relocalizer::Matches Relocalizer::agreeing(const Matches& matches,
   return kept;
 }
 
-// The pose of three matches with depth that most matches agree with; nothing where too few do.
+// The pose, from three matches with depth, that most matches agree with; nothing where too few do.
 std::optional<Eigen::Isometry3d> Relocalizer::sample_pose(FrameId frame,
                                                           const Features& features,
                                                           const Keyframe& keyframe,
@@ -93,7 +93,7 @@ std::optional<Eigen::Isometry3d> Relocalizer::sample_pose(FrameId frame,
   return best ? std::optional(best->model) : std::nullopt;
 }
 
-// Those of the key frame first, then of its neighbours.
+// The landmarks of the key frame first, then those of its neighbours.
 std::vector<LandmarkId> Relocalizer::local_landmarks(const Keyframe& keyframe,
                                                      const Map& map) const {
   std::vector<LandmarkId> landmarks;

@@ -93,7 +93,7 @@ class Relocalizer {
               std::uint32_t seed);
 
   /// The place with the most matched landmarks among the key frames that look most like the frame.
-  /// Nothing when none fits. `places` has key frames of the map.
+  /// Nothing when no place fits. `places` has key frames of the map.
   [[nodiscard]] std::optional<Relocalization> find(FrameId frame,
                                                    const Features& features,
                                                    const Map& map,

@@ -115,7 +115,7 @@ TEST(Relocalizer, LooksForMoreWhereTheFirstMatchesSay) {
   const std::optional<Relocalization> found = make_relocalizer(world).find(
       FrameId(0), seen.features, simulated.map, index_of(simulated.map));
   ASSERT_TRUE(found);
-  // No one key frame sees all that the frame does, half way between two.
+  // No single key frame sees everything that the frame, half way between two, sees.
   std::size_t most = 0;
   for (const auto& [id, keyframe] : simulated.map.keyframes()) {
     std::size_t seen_by_it = 0;
@@ -127,7 +127,7 @@ TEST(Relocalizer, LooksForMoreWhereTheFirstMatchesSay) {
   EXPECT_GT(found->matches.size(), most + 30);
 }
 
-// A desk of the same make in another room: a part of what is seen is known, and stands as it did.
+// A desk of the same make in another room: a part of the view matches a known place.
 TEST(Relocalizer, DoesNotFindAPlaceThatHasLittleInCommonWithAKnownOne) {
   const SimulatedWorld world({}, simulated_camera());
   const SimulatedMap simulated = map_all_round(world);
@@ -185,7 +185,7 @@ TEST(Relocalizer, IsTheSameBitsForASeed) {
   EXPECT_TRUE(seed_matters);
 }
 
-// Places that share nothing: key frame k stands at the origin of a world of its own.
+// Places that share no landmarks: key frame k is at the origin of the k-th world.
 struct Places {
   std::vector<SimulatedWorld> worlds;
   SimulatedMap map;

@@ -122,7 +122,7 @@ struct LearningCase {
   double stated_readout_s = 0;
 };
 
-// Follows a swinging camera whose pose is known up to what each frame's own noise makes of it.
+// Follows a swinging camera whose poses are estimated from each frame's noisy features.
 double learnt_readout(const LearningCase& c) {
   const SimulatedWorld& world = test_world();
   CameraModel camera = world.camera();

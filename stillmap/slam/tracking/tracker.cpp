@@ -69,7 +69,7 @@ TrackedFrame Tracker::track(const RgbdFrame& frame,
   return tracked;
 }
 
-// By the frame before, or, while lost, by relocalisation.
+// Estimates the pose from the previous frame or, while lost, by relocalisation.
 Tracker::Attempt Tracker::attempt(const TrackedFrame& frame,
                                   Features features,
                                   const Map& map,
@@ -93,7 +93,7 @@ void Tracker::locate(Attempt& attempt,
   if (start) attempt.pose = track_local_map(attempt.frame, attempt.features, *start, map);
 }
 
-// Features that move together can outnumber the static ones: these must not lose their landmarks.
+// Features that move together can outnumber the static ones, which must keep their landmarks.
 bool Tracker::confirms(const Attempt& with_more, const Attempt& without) const {
   if (with_more.inliers() <= without.inliers()) return false;
   const auto shared = std::ranges::count_if(with_more.pose->inliers, [&](const Match& match) {

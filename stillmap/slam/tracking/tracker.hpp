@@ -91,7 +91,7 @@ struct TrackerConfig {
   }
 };
 
-/// Gives the features of a frame again, followed by further ones that are less certain to be
+/// Returns the given features of a frame, followed by further ones that are less certain to be
 /// static; nothing where there are none.
 using MoreFeatures = std::function<std::optional<Features>(const Features&)>;
 
@@ -100,9 +100,9 @@ using MoreFeatures = std::function<std::optional<Features>(const Features&)>;
 /// Each frame is first matched to the previous one under constant velocity; if that fails, with a
 /// wider search, then with the reference key frame by appearance. Then it is matched to the local
 /// map: the landmarks of the key frames that share landmarks with it. While lost, it tries to
-/// relocalise in every frame. Where the features match too few landmarks, further ones may be asked
-/// for; the landmarks matched without them must then agree with the pose. Poses are kept relative
-/// to key frames, so that they follow changes of the map.
+/// relocalise in every frame. Where the features match too few landmarks, further features may be
+/// requested; the landmarks matched without them must then agree with the pose. Poses are kept
+/// relative to key frames, so that they follow changes of the map.
 class Tracker {
  public:
   Tracker(const TrackerConfig& config,
@@ -111,10 +111,10 @@ class Tracker {
           MeasurementModel measure,
           std::uint32_t seed);
 
-  /// Begins a submap with a frame, whose camera becomes its origin.
+  /// Begins a submap with a frame; the frame's camera is the origin of the submap.
   [[nodiscard]] TrackedFrame start(const RgbdFrame& frame, FeaturesPtr features);
 
-  /// The result is lost until a submap was begun or a place of the map is recognised. `places` has
+  /// The status is kLost until a submap is begun or a place of the map is recognised. `places` has
   /// the key frames of the map, for relocalisation.
   [[nodiscard]] TrackedFrame track(const RgbdFrame& frame,
                                    Features features,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Features that are only doubted to be static: asked for in need, believed when the others agree.
+// Doubted features: requested when the others are too few, used when the others agree.
 #include <algorithm>
 
 #include <gtest/gtest.h>
@@ -40,7 +40,7 @@ TEST(Tracker, UsesDoubtedFeaturesWhereTheOthersAreTooFew) {
   }
 }
 
-// Everything doubted has moved by 12 pixels alike, as on somebody who fills the view.
+// All doubted features have moved by the same 12 pixels, as on a person who fills the image.
 TEST(Tracker, TakesNoPoseThatTheTrustedFeaturesContradict) {
   std::vector<double> worst;
   for (const double confirmed_share : {TrackerConfig{}.confirmed_share, 0.0}) {

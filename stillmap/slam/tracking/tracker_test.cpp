@@ -64,8 +64,8 @@ TEST(Tracker, StandsFortyPercentOfWrongDescriptors) {
 }
 
 TEST(Tracker, FollowsAPatternWhoseCornersLookAlike) {
-  // Some 15 of the corners in view look like each: appearance alone finds nothing, only the last
-  // frame says where each is.
+  // About 15 corners in view look like each one: appearance alone finds nothing, only the last
+  // frame tells where each is.
   const SimulatedWorld world({.kinds = 20}, simulated_camera());
   std::mt19937 rng(2);
   const Observed first = world.observe(path(0), kNoise, rng);
@@ -92,7 +92,7 @@ TEST(Tracker, StandsThirtyPercentOfMatchesThatMoved) {
     Features features = walk.observe(k, kNoise).features;
     for (std::size_t i = 0; i < features.size(); ++i) {
       if (i % 10 >= 3) continue;
-      features.raw_px[i].x() += 9.0F;  // all alike, as on something that walks by
+      features.raw_px[i].x() += 9.0F;  // by the same shift, as on a passing person
       features.ideal_px[i].x() += 9.0F;
     }
     const TrackedFrame frame = walk.track(k, std::move(features));
@@ -122,7 +122,7 @@ TEST(Tracker, FindsBackAtAnotherPlaceThanWhereItWasLost) {
   Walk walk(path, without_calibration());
   for (int k = 1; k <= 5; ++k) (void)walk.track(k, walk.observe(k, kNoise).features);
   ASSERT_EQ(walk.track(6, {}).status, TrackingStatus::kLost);
-  // Two seconds later, with stamps that know nothing of it: constant velocity does not lead there.
+  // Two seconds later, although the stamps do not say so: constant velocity does not lead there.
   const TrackedFrame frame = walk.track(66, walk.observe(66, kNoise).features);
   EXPECT_EQ(frame.status, TrackingStatus::kRelocalized);
   EXPECT_LT(walk.error_m(frame), 0.015);
@@ -173,7 +173,7 @@ TEST(Tracker, MergedLandmarksAndDroppedKeyframesReachIt) {
   }
 }
 
-// Each feature of `seen` again, a little beside and a level up, as corners often are.
+// Each feature of `seen`, and a copy slightly beside it and a level up, as corners often have.
 Observed with_twins(const Observed& seen) {
   Observed doubled = seen;
   Features& f = doubled.features;
