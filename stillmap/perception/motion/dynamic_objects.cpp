@@ -10,7 +10,6 @@
 #include "stillmap/core/error.hpp"
 #include "stillmap/perception/detections/class_names.hpp"
 #include "stillmap/perception/motion/interaction.hpp"
-#include "stillmap/perception/objects/boxes.hpp"
 #include "stillmap/perception/objects/object_size.hpp"
 
 namespace stillmap {
@@ -49,21 +48,6 @@ ObjectMask dynamic_pixels(const FrameObjects& objects,
     }
   }
   return ObjectMask(result);
-}
-
-/// The pixels of an object's box at its depths. The edge of a mask by depth is less certain than
-/// that of a network's mask.
-PixelPatch box_at_depths(const ObjectView& object, const DepthInterval& depths, double margin_m) {
-  const cv::Rect box = pixels_of(object.box, object.depth.mat.size());
-  PixelPatch patch{box, cv::Mat1b(box.size(), std::uint8_t{0})};
-  const auto margin = static_cast<float>(margin_m);
-  const DepthInterval wide{depths.min_m - margin, depths.max_m + margin};
-  for (int v = 0; v < box.height; ++v) {
-    const float* z = object.depth.mat[box.y + v] + box.x;
-    std::uint8_t* pixel = patch.pixels[v];
-    for (int u = 0; u < box.width; ++u) pixel[u] = wide.contains(z[u]) ? 1 : 0;
-  }
-  return patch;
 }
 
 void paint(const PixelPatch& patch, std::uint8_t number, cv::Mat1b& image) {
@@ -218,11 +202,6 @@ ObjectMask DynamicObjects::extended_mask(const DepthImage& depth,
             ? mask_patch(view, area)
             : extend_mask(view, area, measured.depths[i], config_.extension, known_static);
     if (outgrows_its_class(object, patch, depth)) patch = mask_patch(view, area);
-    if (!box_alone && object.mask_source == MaskSource::kDepth && measured.depths[i].interval) {
-      paint(box_at_depths(view, *measured.depths[i].interval, config_.extension.interval_margin_m),
-            static_cast<std::uint8_t>(id),
-            extended);
-    }
     paint(patch, static_cast<std::uint8_t>(id), extended);
   }
   return ObjectMask(extended);
