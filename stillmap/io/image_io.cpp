@@ -58,6 +58,16 @@ cv::Mat1b read_mask(const std::filesystem::path& path) {
   return cv::Mat1b(decode_png(bytes, PngKind::kGray8, path.string()));
 }
 
+void check_mask_size(const cv::Mat1b& mask, cv::Size image, const std::filesystem::path& path) {
+  if (mask.size() == image) return;
+  throw Error("{}: {}x{} pixels, expected {}x{} as the images have",
+              path.string(),
+              mask.cols,
+              mask.rows,
+              image.width,
+              image.height);
+}
+
 std::vector<std::uint8_t> encode_jpeg(const ColorImage& color, int quality) {
   return encode_jpeg_bytes(color.mat, quality);
 }

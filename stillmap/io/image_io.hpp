@@ -35,6 +35,8 @@ class DamagedImage : public Error {
 
 /// Reads an 8-bit gray PNG whose pixels are numbers, such as ids of objects.
 [[nodiscard]] cv::Mat1b read_mask(const std::filesystem::path& path);
+/// Throws Error, naming the mask's file, where a mask is not as large as its image.
+void check_mask_size(const cv::Mat1b& mask, cv::Size image, const std::filesystem::path& path);
 
 /// Encodes a JPEG. `quality` is from 1 to 100.
 [[nodiscard]] std::vector<std::uint8_t> encode_jpeg(const ColorImage& color, int quality);

@@ -65,14 +65,7 @@ void check_mask(const cv::Mat1b& mask,
                 cv::Size image,
                 const fs::path& path,
                 const std::string& place) {
-  if (mask.size() != image) {
-    throw Error("{}: {}x{} pixels, expected {}x{} as the images have",
-                path.string(),
-                mask.cols,
-                mask.rows,
-                image.width,
-                image.height);
-  }
+  check_mask_size(mask, image, path);
   const int id = unknown_id(mask, line.objects);
   if (id != 0) throw Error("{}: has pixels of id {}, which {} has not", path.string(), id, place);
 }

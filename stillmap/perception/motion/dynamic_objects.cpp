@@ -50,17 +50,6 @@ ObjectMask dynamic_pixels(const FrameObjects& objects,
   return ObjectMask(result);
 }
 
-void paint(const PixelPatch& patch, std::uint8_t number, cv::Mat1b& image) {
-  for (int v = 0; v < patch.area.height; ++v) {
-    const std::uint8_t* pixel = patch.pixels[v];
-    std::uint8_t* target = image[patch.area.y + v] + patch.area.x;
-    for (int u = 0; u < patch.area.width; ++u) {
-      const bool free = (target[u] == 0) & (pixel[u] != 0);
-      target[u] = static_cast<std::uint8_t>(target[u] | (free ? number : 0));
-    }
-  }
-}
-
 }  // namespace
 
 Mask DynamicMask::all() const {
@@ -186,7 +175,7 @@ ObjectMask DynamicObjects::extended_mask(const DepthImage& depth,
                                          const MeasuredObjects& measured,
                                          const std::vector<ObjectState>& states,
                                          const HalfDepth& known_static) const {
-  cv::Mat1b extended(depth.mat.size(), std::uint8_t{0});
+  ObjectMask extended(cv::Mat1b(depth.mat.size(), std::uint8_t{0}));
   for (std::size_t i = 0; i < states.size(); ++i) {
     if (!states[i].dynamic) continue;
     const TrackedObject& object = objects.objects[i];
@@ -202,9 +191,9 @@ ObjectMask DynamicObjects::extended_mask(const DepthImage& depth,
             ? mask_patch(view, area)
             : extend_mask(view, area, measured.depths[i], config_.extension, known_static);
     if (outgrows_its_class(object, patch, depth)) patch = mask_patch(view, area);
-    paint(patch, static_cast<std::uint8_t>(id), extended);
+    paint(extended, patch, static_cast<std::uint8_t>(id));
   }
-  return ObjectMask(extended);
+  return extended;
 }
 
 // True when the mask has grown over furniture or a wall. Fan 2020 has no such bound.

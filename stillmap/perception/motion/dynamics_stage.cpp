@@ -39,8 +39,8 @@ std::array<bool, 256> objects_among(const std::vector<ObjectState>& states,
 }
 
 constexpr float kMostDoubt = 0.9F;  // at a score of 1
-constexpr float kTrustOfMovers =
-    0.1F;  // not 0: wrong poses and masks make still objects seem to move
+// Not 0: wrong poses and masks make still objects seem to move.
+constexpr float kTrustOfMovers = 0.1F;
 
 class JudgingStage final : public DynamicsStage {
  public:
@@ -149,7 +149,6 @@ FrameDynamics JudgingStage::judge(
   dynamics.excluded_from_pose = dynamics.excluded;
   if (!doubts_) return dynamics;
   const std::vector<ObjectState>& states = dynamics.judged.states;
-  dynamics.trust = trust_in(dynamics.objects, states);
   std::array<bool, 256> resting = objects_among(states, motions_.standing());
   for (std::size_t i = 0; i < states.size(); ++i) {
     resting[i + 1] = resting[i + 1] && states[i].category != Category::kDynamic;
@@ -178,13 +177,11 @@ std::vector<float> JudgingStage::trust_in(const FrameObjects& objects,
 
 std::optional<DoubtedPixels> JudgingStage::doubted(const FrameDynamics& dynamics) const {
   const bool any_dynamic = std::ranges::any_of(dynamics.judged.states, &ObjectState::dynamic);
-  if (!any_dynamic || dynamics.trust.empty()) return std::nullopt;
+  if (!doubts_ || !any_dynamic) return std::nullopt;
   std::array<float, 256> trust{};
   trust[0] = 1.0F - kMostDoubt;  // the margin around an object
-  std::ranges::copy(dynamics.trust, trust.begin() + 1);
-  std::array<bool, 256> every{};
-  every.fill(true);
-  const Mask jumps = widened(dynamics.judged.mask.all_without(every), config_.feature_margin_px);
+  std::ranges::copy(trust_in(dynamics.objects, dynamics.judged.states), trust.begin() + 1);
+  const Mask jumps = widened(Mask(dynamics.judged.mask.jumps.mat), config_.feature_margin_px);
   DoubtedPixels pixels{Mask(cv::Mat1b(jumps.mat.size())), cv::Mat1f(jumps.mat.size())};
   for (int row = 0; row < jumps.mat.rows; ++row) {
     for (int x = 0; x < jumps.mat.cols; ++x) {

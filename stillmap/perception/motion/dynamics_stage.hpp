@@ -69,9 +69,6 @@ struct FrameDynamics {
   /// Pixels that no feature may have: `excluded` without objects that have stood still since first
   /// seen.
   Mask excluded_from_pose;
-  /// Per object, how likely it is static, in [0, 1]; small for an object seen to move. Empty: the
-  /// mode doubts nothing.
-  std::vector<float> trust = {};
 };
 
 /// The excluded pixels on dynamic objects: whether they are static is only doubted.

@@ -196,16 +196,6 @@ class CellGrid {
   std::vector<Side> side_;
 };
 
-void give(ObjectMask& mask, const PixelPatch& patch, int id) {
-  for (int v = 0; v < patch.area.height; ++v) {
-    std::uint8_t* ids = mask.mat[patch.area.y + v] + patch.area.x;
-    const std::uint8_t* pixels = patch.pixels[v];
-    for (int u = 0; u < patch.area.width; ++u) {
-      if (pixels[u] != 0 && ids[u] == 0) ids[u] = static_cast<std::uint8_t>(id);
-    }
-  }
-}
-
 }  // namespace
 
 PixelPatch mask_from_depth(const DepthImage& depth,
@@ -259,7 +249,7 @@ std::vector<bool> complete_masks(FrameDetections& detections,
                                                  : cv::Mat1b(detections.mask.mat.clone()));
       own = true;
     }
-    give(detections.mask, patch, object.id);
+    paint(detections.mask, patch, static_cast<std::uint8_t>(object.id));
     completed[i] = true;
   }
   return completed;

@@ -41,17 +41,6 @@ FrameObjects detected_objects(const ObjectTracker::Observation& frame,
   return result;
 }
 
-/// Gives `id` the pixels of a patch that no object has.
-void paint(ObjectMask& mask, const PixelPatch& patch, std::uint8_t id) {
-  for (int v = 0; v < patch.area.height; ++v) {
-    std::uint8_t* ids = mask.mat[patch.area.y + v] + patch.area.x;
-    const std::uint8_t* pixels = patch.pixels[v];
-    for (int u = 0; u < patch.area.width; ++u) {
-      if (pixels[u] != 0 && ids[u] == 0) ids[u] = id;
-    }
-  }
-}
-
 }  // namespace
 
 ObjectTracker::ObjectTracker(const ObjectTrackerConfig& config, FillRule rule)
@@ -127,7 +116,7 @@ std::vector<TrackId> ObjectTracker::associate(const Observation& frame) {
 
 // The object's depth in its track's last frame tells its layer from others in the box.
 std::vector<MaskSource> ObjectTracker::complete(Observation& frame,
-                                                const std::vector<TrackId>& tracks) {
+                                                const std::vector<TrackId>& tracks) const {
   std::vector<MaskSource> sources(tracks.size(), MaskSource::kDetected);
   if (!config_.masks_from_depth || frame.depth.mat.empty()) return sources;
   std::vector<std::optional<float>> expected;
@@ -135,17 +124,24 @@ std::vector<MaskSource> ObjectTracker::complete(Observation& frame,
     expected.push_back(std::ranges::find(tracks_, id, &Track::id)->depth_m);
   }
   const std::vector<bool> completed = complete_masks(frame.detections, frame.depth, expected);
-  const MaskAreas areas = mask_areas(frame.detections.mask);
   for (std::size_t i = 0; i < tracks.size(); ++i) {
-    if (!completed[i]) continue;
-    sources[i] = MaskSource::kDepth;
-    const int id = frame.detections.objects[i].id;
-    const ObjectDepths depths = object_depths(
-        frame.depth, frame.detections.mask, id, areas[static_cast<std::size_t>(id)], OutlierRule{});
-    if (depths.measured > 0)
-      std::ranges::find(tracks_, tracks[i], &Track::id)->depth_m = depths.median_m;
+    if (completed[i]) sources[i] = MaskSource::kDepth;
   }
   return sources;
+}
+
+void ObjectTracker::remember_depths(const Held& held) {
+  const FrameDetections& detections = held.frame.detections;
+  for (std::size_t i = 0; i < held.tracks.size(); ++i) {
+    if (held.sources[i] != MaskSource::kDepth) continue;
+    const int id = detections.objects[i].id;
+    const MaskArea& area = (*held.areas)[static_cast<std::size_t>(id)];
+    const ObjectDepths depths =
+        object_depths(held.frame.depth, detections.mask, id, area, OutlierRule{});
+    if (depths.measured > 0) {
+      std::ranges::find(tracks_, held.tracks[i], &Track::id)->depth_m = depths.median_m;
+    }
+  }
 }
 
 std::optional<FrameObjects> ObjectTracker::push(Observation frame) {
@@ -162,6 +158,7 @@ std::optional<FrameObjects> ObjectTracker::push(Observation frame) {
   auto areas = std::make_shared<const MaskAreas>(mask_areas(frame.detections.mask));
   held_.push_back(
       {std::move(frame), pushed_, std::move(tracks), std::move(sources), std::move(areas)});
+  remember_depths(held_.back());
   ++pushed_;
   const std::size_t delay = rule_ == FillRule::kBothWays ? search : 0;
   if (pushed_ <= delay) return std::nullopt;

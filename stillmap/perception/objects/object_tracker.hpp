@@ -131,7 +131,8 @@ class ObjectTracker {
   [[nodiscard]] static PixelBox predicted_box(const Track& track, double stamp_s);
   [[nodiscard]] std::vector<TrackId> associate(const Observation& frame);
   [[nodiscard]] std::vector<MaskSource> complete(Observation& frame,
-                                                 const std::vector<TrackId>& tracks);
+                                                 const std::vector<TrackId>& tracks) const;
+  void remember_depths(const Held& held);
   void see(Track& track, const DetectedObject& object, double stamp_s) const;
   [[nodiscard]] FrameObjects leave(const Held& held) const;
   [[nodiscard]] bool is_real(const Track& track, const Held& held) const;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+
 #include <opencv2/core/mat.hpp>
 
 #include "stillmap/core/images.hpp"
@@ -14,6 +16,9 @@ struct PixelPatch {
   cv::Rect area;
   cv::Mat1b pixels;
 };
+
+/// Gives `id` the pixels of a patch that no object has.
+void paint(ObjectMask& mask, const PixelPatch& patch, std::uint8_t id);
 
 /// The pixels of an object in a frame.
 struct ObjectView {

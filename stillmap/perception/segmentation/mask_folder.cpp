@@ -51,14 +51,7 @@ void check_values(const cv::Mat1b& mask, const fs::path& path) {
 
 cv::Mat1b read_person_mask(const fs::path& path, cv::Size image) {
   cv::Mat1b mask = read_mask(path);
-  if (mask.size() != image) {
-    throw Error("{}: {}x{} pixels, expected {}x{} as the images have",
-                path.string(),
-                mask.cols,
-                mask.rows,
-                image.width,
-                image.height);
-  }
+  check_mask_size(mask, image, path);
   check_values(mask, path);
   return mask;
 }
