@@ -22,7 +22,7 @@ enum class FeatureVerdict : std::uint8_t {
   kUnstableDepth,  ///< the depth around it varies too much
   kDynamic,        ///< in the box of a dynamic object and not a static match
   kStaticInBox,    ///< in the box of a dynamic object and a static match
-  kDoubted,  ///< on a dynamic object that is not known to move: used where the others are too few
+  kDoubted,        ///< on a dynamic object: used where the others are too few
 };
 
 /// The wall-clock time of one stage's work on a frame.

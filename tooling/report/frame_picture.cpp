@@ -20,11 +20,7 @@ constexpr std::array<VerdictStyle, 7> kStyles = {
       "static in the box of something dynamic",
       3,
       {0, 230, 255}},
-     {FeatureVerdict::kDoubted,
-      true,
-      "on something dynamic that is not seen to move",
-      3,
-      {220, 255, 60}},
+     {FeatureVerdict::kDoubted, true, "on something dynamic, used in need", 3, {220, 255, 60}},
      {FeatureVerdict::kStable, true, "tracked", 3, {40, 255, 110}}}};
 
 cv::Scalar scalar(Rgb color) {

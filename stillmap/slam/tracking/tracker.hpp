@@ -68,8 +68,8 @@ struct TrackerConfig {
     visit("enough_inliers",
           self.enough_inliers,
           FieldInfo{
-              "number of matched landmarks below which features on dynamic objects that are not "
-              "known to move are used, too",
+              "number of matched landmarks below which features on dynamic objects are used, too, "
+              "weighted by their trust",
               "",
               0,
               10000});
