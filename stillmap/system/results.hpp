@@ -76,6 +76,8 @@ struct RunResult {
   PointCloud map;                    ///< of that submap
   std::vector<ClosedLoop> loops;     ///< closed in this run
   bool lost_at_end = false;          ///< the last frame has no pose
+  /// The tracks in frames' results that turned out to be of one object, in the order of finding.
+  std::vector<UnitedTracks> united_tracks;
 };
 
 }  // namespace stillmap

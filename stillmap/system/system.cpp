@@ -75,6 +75,7 @@ RunResult System::finish() {
   s.back_end.finish();
   RunResult result = s.back_end.result(s.threads);
   result.lost_at_end = s.lost_frames > 0 || s.frame_number == 0;
+  result.united_tracks = s.dynamics->united_tracks();
   for (Observer* observer : s.observers) {
     observer->on_map(result.map, s.frame_number);
     observer->on_end(result);

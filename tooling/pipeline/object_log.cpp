@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -113,7 +114,10 @@ std::string objects_jsonl(std::span<const LoggedFrame> frames, const Trajectory&
 std::vector<ObjectSummary> summarize_objects(std::span<const LoggedFrame> frames) {
   std::map<TrackId, TrackCounts> tracks;
   for (const auto& [pose, states] : frames) {
-    for (const ObjectState& state : states) count(tracks[state.track], state);
+    std::set<TrackId> in_frame;  // a track may have several parts
+    for (const ObjectState& state : states) {
+      if (in_frame.insert(state.track).second) count(tracks[state.track], state);
+    }
   }
   std::vector<ObjectSummary> summaries;
   for (auto& [track, counts] : tracks) {
@@ -126,6 +130,26 @@ std::vector<ObjectSummary> summarize_objects(std::span<const LoggedFrame> frames
     summaries.push_back(std::move(summary));
   }
   return summaries;
+}
+
+void ObjectLog::on_end(const RunResult& result) {
+  std::map<TrackId, TrackId> known_as;
+  for (const UnitedTracks& united : result.united_tracks) {
+    for (auto& [track, later] : known_as) {
+      if (later == united.later) later = united.earlier;
+    }
+    known_as[united.later] = united.earlier;
+  }
+  const auto rename = [&](TrackId& track) {
+    if (const auto found = known_as.find(track); found != known_as.end()) track = found->second;
+  };
+  for (auto& [pose, states] : frames_) {
+    for (ObjectState& state : states) {
+      rename(state.track);
+      if (state.person) rename(*state.person);
+      if (state.motion.by) rename(*state.motion.by);
+    }
+  }
 }
 
 }  // namespace stillmap

@@ -36,12 +36,15 @@ using LoggedFrame = std::pair<StampedPose, std::vector<ObjectState>>;
 /// A summary of each object over all frames, by ascending track number.
 [[nodiscard]] std::vector<ObjectSummary> summarize_objects(std::span<const LoggedFrame> frames);
 
-/// Keeps the objects of all frames judged by the dynamics stage.
+/// Keeps the objects of all frames judged by the dynamics stage. Parts of an object that the
+/// network sees apart share its track.
 class ObjectLog : public Observer {
  public:
   void on_frame(const RgbdFrame& /*frame*/, const FrameResult& result) override {
     frames_.push_back(log_frame(result));
   }
+  /// Gives the objects the tracks that they are known by at the end.
+  void on_end(const RunResult& result) override;
 
   /// See objects_jsonl().
   [[nodiscard]] std::string jsonl(const Trajectory& final_poses) const {

@@ -115,6 +115,25 @@ TEST(ObjectLog, KeysStayInOrder) {
   EXPECT_EQ(text.back(), '\n');
 }
 
+TEST(ObjectLog, TracksOfOneObjectAreOneAtTheEnd) {
+  ObjectLog log;
+  FrameResult result = pushed_chair({5.0, "5"});
+  result.objects.push_back(result.objects[0]);
+  result.objects.back().track = TrackId(2);
+  log.on_frame({}, result);
+  RunResult end;
+  end.united_tracks = {{TrackId(4), TrackId(3)}, {TrackId(3), TrackId(2)}};
+  log.on_end(end);
+  const json objects = lines_of(log.jsonl({})).at(0).at("objects");
+  EXPECT_EQ(objects.at(0).at("track"), 2);
+  EXPECT_EQ(objects.at(1).at("track"), 7);
+  EXPECT_EQ(objects.at(1).at("person"), 2);
+  EXPECT_EQ(objects.at(1).at("by"), 2);
+  const std::vector<ObjectSummary> summaries = log.summaries();
+  ASSERT_EQ(summaries.size(), 2U);
+  EXPECT_EQ(summaries[0].frames, 1U) << "two parts in one frame";
+}
+
 TEST(ObjectLog, SumsUpEachTrack) {
   FrameResult apart = pushed_chair({2, "2"});
   apart.objects[1].dynamic = false;

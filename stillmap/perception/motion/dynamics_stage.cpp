@@ -29,13 +29,27 @@ Mask widened(const Mask& mask, double margin_px) {
 }
 
 /// Marks the ids of the objects that belong to the given tracks.
-std::array<bool, 256> objects_among(const std::vector<ObjectState>& states,
+std::array<bool, 256> objects_among(const FrameObjects& objects,
                                     const std::vector<TrackId>& tracks) {
   std::array<bool, 256> among{};
-  for (std::size_t i = 0; i < states.size(); ++i) {
-    among[i + 1] = std::ranges::find(tracks, states[i].track) != tracks.end();
+  for (std::size_t i = 0; i < objects.objects.size(); ++i) {
+    among[i + 1] = std::ranges::find(tracks, objects.objects[i].track) != tracks.end();
   }
   return among;
+}
+
+/// Replaces the tracks of the objects of a frame in their states by lasting ones.
+void identify_states(std::vector<ObjectState>& states,
+                     const FrameObjects& objects,
+                     const std::vector<TrackId>& lasting) {
+  const auto identify = [&](TrackId& track) {
+    const auto object = std::ranges::find(objects.objects, track, &TrackedObject::track);
+    track = lasting[static_cast<std::size_t>(object - objects.objects.begin())];
+  };
+  for (ObjectState& state : states) {
+    identify(state.track);
+    if (state.person) identify(*state.person);
+  }
 }
 
 constexpr float kMostDoubt = 0.9F;  // at a score of 1
@@ -52,6 +66,7 @@ class JudgingStage final : public DynamicsStage {
         jumps_(mode.jumps),
         doubts_(mode.doubts),
         objects_(config.objects, camera, mode),
+        identities_(config.identity, objects_.categories(), camera),
         motions_(config.motion, camera),
         filter_(config.features, camera, mode, seed) {}
 
@@ -63,7 +78,7 @@ class JudgingStage final : public DynamicsStage {
       const RgbdFrame& frame,
       FrameObjects objects,
       const MeasuredObjects& measured,
-      const std::optional<Eigen::Isometry3d>& T_odometry_camera_expected) const override;
+      const std::optional<Eigen::Isometry3d>& T_odometry_camera_expected) override;
   [[nodiscard]] std::optional<DoubtedPixels> doubted(const FrameDynamics& dynamics) const override;
   [[nodiscard]] FilteredFeatures filter(
       const RgbdFrame& frame,
@@ -77,6 +92,9 @@ class JudgingStage final : public DynamicsStage {
                 const Eigen::Isometry3d& T_odometry_camera,
                 const FrameDynamics& dynamics) override;
   void forget() override;
+  [[nodiscard]] std::vector<UnitedTracks> united_tracks() const override {
+    return identities_.united();
+  }
 
  private:
   /// A remembered frame.
@@ -97,6 +115,7 @@ class JudgingStage final : public DynamicsStage {
   JumpRule jumps_;
   bool doubts_;
   DynamicObjects objects_;
+  ObjectIdentities identities_;
   MotionEstimator motions_;
   FeatureFilter filter_;
   std::optional<PastView> last_;
@@ -139,17 +158,21 @@ FrameDynamics JudgingStage::judge(
     const RgbdFrame& frame,
     FrameObjects objects,
     const MeasuredObjects& measured,
-    const std::optional<Eigen::Isometry3d>& T_odometry_camera_expected) const {
+    const std::optional<Eigen::Isometry3d>& T_odometry_camera_expected) {
   FrameDynamics dynamics;
   dynamics.judged = objects_.judge(
       frame.depth, objects, measured, previous(T_odometry_camera_expected), motions_.moving());
+  identify_states(dynamics.judged.states,
+                  objects,
+                  identities_.identify(
+                      frame, objects, measured.areas, measured.depths, T_odometry_camera_expected));
   dynamics.objects = std::move(objects);
   const DynamicMask& mask = dynamics.judged.mask;
   dynamics.excluded = widened(mask.all(), config_.feature_margin_px);
   dynamics.excluded_from_pose = dynamics.excluded;
   if (!doubts_) return dynamics;
   const std::vector<ObjectState>& states = dynamics.judged.states;
-  std::array<bool, 256> resting = objects_among(states, motions_.standing());
+  std::array<bool, 256> resting = objects_among(dynamics.objects, motions_.standing());
   for (std::size_t i = 0; i < states.size(); ++i) {
     resting[i + 1] = resting[i + 1] && states[i].category != Category::kDynamic;
   }
@@ -163,8 +186,8 @@ FrameDynamics JudgingStage::judge(
 // that have stood still since first seen are trusted more; people are not, because they sway.
 std::vector<float> JudgingStage::trust_in(const FrameObjects& objects,
                                           const std::vector<ObjectState>& states) const {
-  const std::array<bool, 256> moving = objects_among(states, motions_.moving());
-  const std::array<bool, 256> standing = objects_among(states, motions_.standing());
+  const std::array<bool, 256> moving = objects_among(objects, motions_.moving());
+  const std::array<bool, 256> standing = objects_among(objects, motions_.standing());
   std::vector<float> trust;
   for (std::size_t i = 0; i < states.size(); ++i) {
     const float score = std::clamp(objects.objects[i].detection.score, 0.0F, 1.0F);
@@ -259,7 +282,7 @@ FrameDynamics DynamicsStage::judge(
     const RgbdFrame& /*frame*/,
     FrameObjects /*objects*/,
     const MeasuredObjects& /*measured*/,
-    const std::optional<Eigen::Isometry3d>& /*T_odometry_camera_expected*/) const {
+    const std::optional<Eigen::Isometry3d>& /*T_odometry_camera_expected*/) {
   return {};
 }
 

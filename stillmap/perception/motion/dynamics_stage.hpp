@@ -12,6 +12,7 @@
 #include "stillmap/perception/motion/feature_filter.hpp"
 #include "stillmap/perception/motion/modes.hpp"
 #include "stillmap/perception/motion/motion_estimator.hpp"
+#include "stillmap/perception/objects/object_identities.hpp"
 #include "stillmap/perception/objects/object_tracker.hpp"
 
 namespace stillmap {
@@ -23,6 +24,7 @@ struct DynamicsConfig {
   bool fill_boxes = true;
   DynamicObjectsConfig objects;
   ObjectTrackerConfig tracker;
+  IdentityConfig identity;
   MotionStateConfig motion;
   FeatureFilterConfig features;
 
@@ -56,6 +58,7 @@ struct DynamicsConfig {
                     "and after"});
     DynamicObjectsConfig::fields(self.objects, visit);
     visit.group("tracker", self.tracker);
+    visit.group("identity", self.identity);
     visit.group("motion", self.motion);
     FeatureFilterConfig::fields(self.features, visit);
   }
@@ -63,8 +66,8 @@ struct DynamicsConfig {
 
 /// The dynamics of one frame: its judged objects and its dynamic pixels.
 struct FrameDynamics {
-  FrameObjects objects;
-  DynamicsResult judged;  ///< `judged.states` in the order of the objects
+  FrameObjects objects;   ///< with the tracks of the ObjectTracker
+  DynamicsResult judged;  ///< `judged.states` in the order of the objects, with lasting tracks
   Mask excluded;  ///< pixels that are not static surface for the map: `judged.mask` and a margin
   /// Pixels that no feature may have: `excluded` without objects that have stood still since first
   /// seen.
@@ -95,12 +98,12 @@ class DynamicsStage {
                                                 const FrameObjects& objects) const;
 
   /// Judges a frame by its predicted pose; nothing if there is no prediction. `measured` is the
-  /// result of measure() for the same frame.
+  /// result of measure() for the same frame. The states in the result have lasting tracks.
   [[nodiscard]] virtual FrameDynamics judge(
       const RgbdFrame& frame,
       FrameObjects objects,
       const MeasuredObjects& measured,
-      const std::optional<Eigen::Isometry3d>& T_odometry_camera_expected) const;
+      const std::optional<Eigen::Isometry3d>& T_odometry_camera_expected);
 
   /// The pixels on which further features may be looked for when the others are too few; nothing if
   /// there are none.
@@ -125,6 +128,9 @@ class DynamicsStage {
   virtual void remember(const RgbdFrame& frame,
                         const Eigen::Isometry3d& T_odometry_camera,
                         const FrameDynamics& dynamics);
+
+  /// The tracks of earlier frames that turned out to be of one object, in the order of finding.
+  [[nodiscard]] virtual std::vector<UnitedTracks> united_tracks() const { return {}; }
 
   /// Tells the stage that tracking was lost: the next frame with a pose does not continue the last.
   /// Older frames are kept, because they are in the same odometry frame. They show moving people as

@@ -12,8 +12,15 @@
 
 namespace stillmap {
 
-/// The number of a track: the same object in all its frames has the same number.
+/// The number of a track. An ObjectTracker's tracks follow an object from frame to frame and end
+/// when it is not seen for some; those of ObjectIdentities last.
 using TrackId = Id<struct TrackTag>;
+
+/// Two tracks that turned out to be of one object: frames until then have them both.
+struct UnitedTracks {
+  TrackId later;    ///< no frame after that has it
+  TrackId earlier;  ///< the object's track from then on
+};
 
 /// The source of an object's pixels.
 enum class MaskSource : std::uint8_t {

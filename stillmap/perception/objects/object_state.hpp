@@ -71,8 +71,8 @@ struct Motion {
 
 /// The state of an object in a frame: its track, whether it is dynamic and why, and its motion.
 struct ObjectState {
-  TrackId track;                                   ///< the same in all frames of the object
-  std::string class_name;                          ///< the COCO name if there is one
+  TrackId track;           ///< lasting: the same in all frames with the object (ObjectIdentities)
+  std::string class_name;  ///< the COCO name if there is one
   Category category = Category::kStatic;           ///< of its class
   bool dynamic = false;                            ///< in this frame
   StateReason reason = StateReason::kStaticClass;  ///< why it is dynamic or not
