@@ -21,6 +21,7 @@ CloudConfig CloudConfig::resolved_for(const CloudRules& rules) const {
   if (depth.edges == "by_mode") config.depth.edges = rules.edges;
   if (depth.islands == "by_mode") config.depth.islands = rules.islands;
   if (free_space == "by_mode") config.free_space = rules.free_space;
+  if (missed_people == "by_mode") config.missed_people = rules.missed_people;
   return config;
 }
 

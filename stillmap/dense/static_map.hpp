@@ -11,6 +11,7 @@
 #include "stillmap/core/rgbd_frame.hpp"
 #include "stillmap/dense/free_space.hpp"
 #include "stillmap/dense/local_cloud.hpp"
+#include "stillmap/dense/missed_movers.hpp"
 #include "stillmap/dense/range_image.hpp"
 #include "stillmap/dense/static_depth.hpp"
 #include "stillmap/dense/static_view.hpp"
@@ -30,6 +31,8 @@ struct CloudConfig {
   std::string free_space = "by_mode";
   RangeImageConfig range;
   FreeSpaceConfig free;
+  std::string missed_people = "by_mode";
+  MissedMoversConfig missed;
 
   /// The settings with each "by_mode" replaced by the rule of a mode.
   [[nodiscard]] CloudConfig resolved_for(const CloudRules& rules) const;
@@ -63,6 +66,15 @@ struct CloudConfig {
               {"by_mode", "off", "on"}}));
     visit.group("range", self.range);
     visit.group("free", self.free);
+    visit("missed_people",
+          self.missed_people,
+          FieldInfo{"removal of surface where a person that the network missed must have been; "
+                    "by_mode: as dynamics.mode says",
+                    "",
+                    0,
+                    0,
+                    {"by_mode", "off", "on"}});
+    visit.group("missed", self.missed);
   }
 };
 

@@ -63,7 +63,7 @@ void BackEnd::apply_finished_work(std::int64_t frame_number) {
   bool moved = closed_loops_.size() > loops_before;
   if (mapping_.idle()) moved = loops_.apply_due(session_.map, frame_number) || moved;
   if (moved) T_odometry_world_ = T_odometry_world_ * T_before * T_world_last().inverse();
-  dense_.collect_due(session_, frame_number);
+  dense_.collect_due(session_, T_odometry_world_, frame_number);
 }
 
 void BackEnd::apply(const MapUpdate& update, std::int64_t frame_number) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "stillmap/concurrency/workers.hpp"
@@ -57,6 +58,10 @@ class BackEnd {
   /// Begins a recorded frame's view of the dense map if a view is due at this frame.
   void add_view(const DenseStage::Candidate& candidate, std::int64_t frame_number) {
     dense_.add(candidate, frame_number);
+  }
+  /// Remembers the people in a frame, for the views of the frames near it.
+  void remember_movers(double stamp_s, std::vector<MoverSighting> movers) {
+    dense_.remember_movers(stamp_s, std::move(movers));
   }
   /// Tracking was lost.
   void lost() { loops_.tracking_lost(); }

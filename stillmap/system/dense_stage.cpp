@@ -22,6 +22,7 @@ DenseStage::DenseStage(const CloudConfig& config,
     : config_(config),
       camera_(camera),
       rays_(pixel_rays(camera)),
+      missed_(config.missed),
       jobs_(options.worker, [probe = options.probe] { begin_work(probe, Stage::kViews); }) {}
 
 DenseStage DenseStage::inline_copy() const {
@@ -53,8 +54,25 @@ bool DenseStage::is_due(std::int64_t record) const {
   return config_.view_gap_frames > 0 && record - *last_ >= config_.view_gap_frames;
 }
 
-void DenseStage::collect_due(Session& session, std::int64_t frame_number) {
+void DenseStage::leave_out_missed(ViewRecord& made,
+                                  const Session& session,
+                                  const Eigen::Isometry3d& T_odometry_world) const {
+  if (config_.missed_people != "on") return;
+  const FrameRecord& frame = session.frames[made.frame];
+  std::vector<Eigen::Vector3d> places = missed_.places_at(frame.stamp.seconds);
+  if (places.empty()) return;
+  const Eigen::Isometry3d T_camera_odometry =
+      (T_odometry_world * T_world_frame(session, frame)).inverse();
+  for (Eigen::Vector3d& p : places) p = T_camera_odometry * p;
+  made.view = std::make_shared<const StaticView>(
+      without_places(*made.view, places, config_.missed.reach_m));
+}
+
+void DenseStage::collect_due(Session& session,
+                             const Eigen::Isometry3d& T_odometry_world,
+                             std::int64_t frame_number) {
   for (ViewRecord& made : jobs_.collect_due(frame_number)) {
+    leave_out_missed(made, session, T_odometry_world);
     if (is_worth_keeping(session, made)) session.views.push_back(std::move(made));
   }
 }

@@ -3,9 +3,12 @@
 
 #include <cstdint>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "stillmap/concurrency/job_ledger.hpp"
 #include "stillmap/concurrency/stage_probe.hpp"
+#include "stillmap/dense/missed_movers.hpp"
 #include "stillmap/dense/static_map.hpp"
 #include "stillmap/perception/motion/dynamics_stage.hpp"
 #include "stillmap/session/session.hpp"
@@ -31,8 +34,17 @@ class DenseStage {
   /// Begins the candidate's view if one is due. To be called in the order of the records.
   void add(const Candidate& candidate, std::int64_t frame_number);
 
-  /// Adds the views that are due to the session, except those that show nothing new.
-  void collect_due(Session& session, std::int64_t frame_number);
+  /// Remembers the people in a frame, found in it or filled in.
+  void remember_movers(double stamp_s, std::vector<MoverSighting> movers) {
+    missed_.remember(stamp_s, std::move(movers));
+  }
+
+  /// Adds the views that are due to the session, except those that show nothing new, and without
+  /// surface where somebody must have been whom the network missed. The odometry frame is that of
+  /// the movers.
+  void collect_due(Session& session,
+                   const Eigen::Isometry3d& T_odometry_world,
+                   std::int64_t frame_number);
 
   /// The map of the posed views; the result is the same for any number of threads.
   [[nodiscard]] PointCloud map_of(std::span<const PosedView> views, std::size_t threads) const {
@@ -44,11 +56,15 @@ class DenseStage {
 
  private:
   [[nodiscard]] bool is_due(std::int64_t record) const;
+  void leave_out_missed(ViewRecord& made,
+                        const Session& session,
+                        const Eigen::Isometry3d& T_odometry_world) const;
   [[nodiscard]] bool is_worth_keeping(const Session& session, const ViewRecord& made) const;
 
   CloudConfig config_;
   CameraModel camera_;
   cv::Mat2f rays_;
+  MissedMovers missed_;
   std::optional<std::int64_t> last_;  // record of the last view's frame
   JobLedger<ViewRecord> jobs_;
 };

@@ -197,6 +197,7 @@ FrameResult System::Stages::remember(const Outcome& outcome) {
     result.objects = judged.judged.states;
   } else {
     const std::size_t record = back_end.record(*frame, tracked);
+    back_end.remember_movers(frame->stamp.seconds, judged.movers);
     if (!localize_only && origin == MaskOrigin::kOwn) {
       back_end.add_view({frame, judged, record, is_keyframe}, frame_number);
     }
@@ -236,6 +237,7 @@ void System::Stages::take_objects(FrameObjects objects) {
   const FrameDynamics judged =
       dynamics->judge(frame, std::move(objects), measured, T_odometry_camera);
   (void)dynamics->with_motion(frame, T_odometry_camera, judged);  // for the frames to come
+  back_end.remember_movers(frame.stamp.seconds, judged.movers);
   const TrackedFrame tracked = without_excluded_features(
       awaiting->tracked, judged.excluded_from_pose, back_end.map(), camera);
   const bool is_keyframe = wants_keyframe(config.keyframe, tracked, since_keyframe, back_end.map());

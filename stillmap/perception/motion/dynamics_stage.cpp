@@ -166,6 +166,7 @@ FrameDynamics JudgingStage::judge(
                   objects,
                   identities_.identify(
                       frame, objects, measured.areas, measured.depths, T_odometry_camera_expected));
+  dynamics.movers = identities_.movers();
   dynamics.objects = std::move(objects);
   const DynamicMask& mask = dynamics.judged.mask;
   dynamics.excluded = widened(mask.all(), config_.feature_margin_px);

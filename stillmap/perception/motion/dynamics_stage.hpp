@@ -69,6 +69,7 @@ struct FrameDynamics {
   FrameObjects objects;   ///< with the tracks of the ObjectTracker
   DynamicsResult judged;  ///< `judged.states` in the order of the objects, with lasting tracks
   Mask excluded;  ///< pixels that are not static surface for the map: `judged.mask` and a margin
+  std::vector<MoverSighting> movers;  ///< people, and what else moves by itself
   /// Pixels that no feature may have: `excluded` without objects that have stood still since first
   /// seen.
   Mask excluded_from_pose;

@@ -45,7 +45,7 @@ constexpr std::array kModes = {
         .doubts = true,
         .depth_stability = DepthStabilityRule::kConfigured,
         .static_matches = StaticMatchRule::kConfigured,
-        .cloud = {.edges = "growing", .islands = "off", .free_space = "on"}},
+        .cloud = {.edges = "growing", .islands = "off", .free_space = "on", .missed_people = "on"}},
 };
 
 }  // namespace

@@ -39,11 +39,14 @@ enum class StaticMatchRule : std::uint8_t {
 };
 
 /// The rules for removal from the depth of a view, and later from the dense map. The texts are the
-/// values of cloud.edges, cloud.islands and cloud.free_space that replace "by_mode".
+/// values of cloud.edges, cloud.islands, cloud.free_space and cloud.missed_people that replace
+/// "by_mode".
 struct CloudRules {
   std::string_view edges;       ///< depth edges, Fan 2020, Eqs. (11)-(12)
   std::string_view islands;     ///< small patches of depth, Fan 2020, Eq. (13)
   std::string_view free_space;  ///< points that later views see through
+  /// Surface where a person that the network missed in the view's frame must have been.
+  std::string_view missed_people = "off";
 };
 
 /// A treatment of motion: one row of the table in modes.cpp. Each stage reads its own column and

@@ -314,7 +314,13 @@ std::vector<TrackId> ObjectIdentities::identify(
   begin_tracks(sightings);
   remember(sightings, now_s);
   unite_by_place(sightings);
-  for (const Sighting& sighting : sightings) tracks.push_back(known_[sighting.known].track);
+  movers_.clear();
+  for (Sighting& sighting : sightings) {
+    const KnownObject& object = known_[sighting.known];
+    tracks.push_back(object.track);
+    if (!mobile(object) || sighting.look.surface.empty()) continue;
+    movers_.push_back({object.track, std::move(sighting.look.surface)});
+  }
   return tracks;
 }
 

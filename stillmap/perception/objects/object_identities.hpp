@@ -69,6 +69,12 @@ struct KnownObject {
   ColorShares colors{};                  ///< running mean
 };
 
+/// What a frame shows of an object that moves by itself.
+struct MoverSighting {
+  TrackId track;
+  std::vector<Eigen::Vector3d> surface;  ///< a sample, in the odometry frame; not empty
+};
+
 /// Gives objects identities that last: an object that is seen again after it was hidden, missed for
 /// long or outside the image has the track that it had before.
 ///
@@ -94,6 +100,8 @@ class ObjectIdentities {
       std::span<const ObjectDepths> depths,
       const std::optional<Eigen::Isometry3d>& T_odometry_camera);
 
+  /// What the frame of the last identify() shows of the objects that move by themselves.
+  [[nodiscard]] const std::vector<MoverSighting>& movers() const { return movers_; }
   /// All objects, by track.
   [[nodiscard]] const std::vector<KnownObject>& known() const { return known_; }
   /// The tracks of earlier frames that turned out to be of one object, in the order of finding.
@@ -149,6 +157,7 @@ class ObjectIdentities {
   std::vector<KnownObject> known_;  // by track
   std::vector<Joined> joined_;      // tracks of the ObjectTracker that may go on
   std::vector<UnitedTracks> united_;
+  std::vector<MoverSighting> movers_;
   std::uint32_t next_track_ = 0;
 };
 
