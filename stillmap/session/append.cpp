@@ -83,6 +83,12 @@ Session appended(const Session& first, const Session& second) {
   for (const ViewRecord& view : second.views) {
     both.views.push_back({view.frame + by.frame, view.view});
   }
+  const std::uint32_t tracks = both.objects.empty() ? 0 : both.objects.back().track.value + 1;
+  if (!second.objects.empty()) check_sum(tracks, second.objects.back().track.value);
+  for (KnownObject object : second.objects) {
+    object.track = shifted(object.track, tracks);
+    both.objects.push_back(std::move(object));
+  }
   return both;
 }
 

@@ -45,7 +45,15 @@ TEST_F(Append, KeepsTheFirstAsItIs) {
   start.loops.resize(first_.loops.size());
   start.frames.resize(first_.frames.size());
   start.views.resize(first_.views.size());
+  start.objects.resize(first_.objects.size());
   expect_same(start, first_);
+}
+
+TEST_F(Append, ObjectsOfTheSecondFollow) {
+  ASSERT_EQ(both_.objects.size(), 4U);
+  EXPECT_EQ(both_.objects[2].track, TrackId(8));
+  EXPECT_EQ(both_.objects[3].track, TrackId(11));
+  EXPECT_EQ(both_.objects[2].surface, second_.objects[0].surface);
 }
 
 TEST_F(Append, KeyFramesOfTheSecondFollow) {

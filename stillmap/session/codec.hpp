@@ -48,6 +48,9 @@ using DroppedKeyframes = std::vector<std::pair<KeyframeId, Anchor>>;
 [[nodiscard]] ByteWriter encode(const ViewRecord& record);
 [[nodiscard]] ViewRecord decode_view(ByteReader content);
 
+[[nodiscard]] ByteWriter encode(const std::vector<KnownObject>& objects);
+[[nodiscard]] std::vector<KnownObject> decode_objects(ByteReader content);
+
 // Shared by several sections.
 void put(ByteWriter& out, const Stamp& stamp);
 [[nodiscard]] Stamp take_stamp(ByteReader& in);

@@ -6,6 +6,7 @@
 #include "stillmap/core/error.hpp"
 #include "stillmap/session/append.hpp"
 #include "stillmap/session/session_cloud.hpp"
+#include "stillmap/session/session_map.hpp"
 #include "stillmap/slam/loop/global_adjustment.hpp"
 #include "stillmap/slam/loop/loop_closer.hpp"
 #include "stillmap/slam/loop/loop_detector.hpp"
@@ -43,6 +44,23 @@ std::size_t close_loops(Session& session,
     ++closed;
   }
   return closed;
+}
+
+// The objects of the second session follow those of the first: where the loops have moved them to,
+// or not at all when its submap was not joined.
+void place_objects(Session& both, const Session& first, const Session& second) {
+  const std::uint32_t offset = first.map.parts().next_keyframe.value;
+  const auto objects = both.objects.begin() + static_cast<std::ptrdiff_t>(first.objects.size());
+  const SubmapId submap = main_submap(second);
+  for (const auto& [id, keyframe] : second.map.keyframes()) {
+    const KeyframeId here(id.value + offset);
+    if (keyframe.submap != submap || !both.map.keyframes().contains(here)) continue;
+    if (both.map.keyframe(here).submap != main_submap(first)) break;
+    const Eigen::Isometry3d T = both.map.T_world_keyframe(here) * keyframe.T_world_camera.inverse();
+    for (auto object = objects; object != both.objects.end(); ++object) *object = moved(*object, T);
+    return;
+  }
+  both.objects.erase(objects, both.objects.end());
 }
 
 }  // namespace
@@ -92,6 +110,7 @@ std::optional<MergedSessions> merge_sessions(const Session& first,
                                    first.camera,
                                    loop_measurement_model(config, map.level_scales()),
                                    config.loop.bundle));
+  place_objects(merged.session, first, second);
   return merged;
 }
 

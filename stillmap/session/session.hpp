@@ -9,6 +9,7 @@
 #include "stillmap/core/trajectory.hpp"
 #include "stillmap/dense/static_view.hpp"
 #include "stillmap/geometry/camera.hpp"
+#include "stillmap/perception/objects/object_identities.hpp"
 #include "stillmap/slam/loop/loop_match.hpp"
 #include "stillmap/slam/map/map.hpp"
 
@@ -36,6 +37,8 @@ struct Session {
   std::vector<LoopEdge> loops;
   std::vector<FrameRecord> frames;  ///< in the order of tracking
   std::vector<ViewRecord> views;    ///< by frame, ascending
+  /// By track, in the world frame of the submap with most of the frames.
+  std::vector<KnownObject> objects = {};
 };
 
 }  // namespace stillmap

@@ -25,7 +25,8 @@ constexpr std::string_view kLandmarks = "LMRK";  // kLandmarksTogether in each b
 constexpr std::string_view kDropped = "DROP";
 constexpr std::string_view kLoops = "LOOP";
 constexpr std::string_view kFrames = "FRAM";
-constexpr std::string_view kView = "VIEW";  // one section each
+constexpr std::string_view kView = "VIEW";     // one section each
+constexpr std::string_view kObjects = "OBJS";  // none without objects
 
 constexpr std::size_t kLandmarksTogether = 65536;
 
@@ -76,6 +77,7 @@ void write_parts(const SessionParts& parts,
   out.write(kLoops, encode(parts.loops), place);
   out.write(kFrames, encode(parts.frames), place);
   for (const ViewRecord& view : parts.views) out.write(kView, encode(view), place);
+  if (!parts.objects.empty()) out.write(kObjects, encode(parts.objects), place);
   out.finish();
 }
 
@@ -130,6 +132,7 @@ Session read(SectionReader in, const SessionReadOptions& options) {
   parts.loops = decode_loops(in.read(kLoops));
   parts.frames = decode_frames(in.read(kFrames));
   parts.views = read_views(in, options);
+  if (in.at(kObjects)) parts.objects = decode_objects(in.read(kObjects));
   in.finish();
   check_records(parts, in.file());
   return {std::move(parts.camera),
@@ -137,7 +140,8 @@ Session read(SectionReader in, const SessionReadOptions& options) {
           Map::from_parts(std::move(parts.map), in.file()),
           std::move(parts.loops),
           std::move(parts.frames),
-          std::move(parts.views)};
+          std::move(parts.views),
+          std::move(parts.objects)};
 }
 
 }  // namespace

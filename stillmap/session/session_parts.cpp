@@ -11,6 +11,8 @@ namespace stillmap {
 namespace {
 
 constexpr std::size_t kMaxConfigSize = std::size_t{1} << 20U;
+constexpr std::size_t kMaxClassName = 256;
+constexpr std::size_t kMaxSurface = 4096;  // points of an object
 
 bool is_known(const MapParts& map, KeyframeId id) {
   const auto keyframe = std::ranges::lower_bound(map.keyframes, id, {}, &Keyframe::id);
@@ -87,6 +89,35 @@ void check_views(const SessionParts& parts, const std::string& place) {
   }
 }
 
+const char* object_problem(const KnownObject& object) {
+  const auto possible = [](const Eigen::Vector3d& p) {
+    return p.allFinite() && p.cwiseAbs().maxCoeff() <= kMaxCoordinate_m;
+  };
+  if (object.class_name.size() > kMaxClassName) return "its class";
+  if (!std::isfinite(object.seen_s) || object.sightings < 0) return "its sightings";
+  if (object.surface.size() > kMaxSurface || !std::ranges::all_of(object.surface, possible)) {
+    return "its surface";
+  }
+  const bool seen = !object.extent.isEmpty();
+  if (seen && !(possible(object.extent.min()) && possible(object.extent.max()))) {
+    return "its extent";
+  }
+  if (!(object.extent_area_m2 >= 0) || !std::isfinite(object.extent_area_m2)) return "its area";
+  const bool shares =
+      std::ranges::all_of(object.colors, [](float share) { return share >= 0 && share <= 1; });
+  return shares ? nullptr : "its colors";
+}
+
+void check_objects(const SessionParts& parts, const std::string& place) {
+  for (std::size_t i = 0; i < parts.objects.size(); ++i) {
+    const KnownObject& object = parts.objects[i];
+    const bool in_order = i == 0 || parts.objects[i - 1].track < object.track;
+    const char* problem =
+        in_order && object.track.value <= kMaxId ? object_problem(object) : "its track";
+    if (problem != nullptr) throw Error("{}: invalid object {}: {}", place, i, problem);
+  }
+}
+
 }  // namespace
 
 SessionParts parts_of(const Session& session) {
@@ -95,7 +126,8 @@ SessionParts parts_of(const Session& session) {
           session.map.parts(),
           session.loops,
           session.frames,
-          session.views};
+          session.views,
+          session.objects};
 }
 
 void check_records(const SessionParts& parts, const std::string& place) {
@@ -106,6 +138,7 @@ void check_records(const SessionParts& parts, const std::string& place) {
   check_loops(parts, place);
   check_frames(parts, place);
   check_views(parts, place);
+  check_objects(parts, place);
 }
 
 }  // namespace stillmap

@@ -17,6 +17,7 @@ struct SessionParts {
   std::vector<LoopEdge> loops;
   std::vector<FrameRecord> frames;
   std::vector<ViewRecord> views;
+  std::vector<KnownObject> objects;
 };
 
 [[nodiscard]] SessionParts parts_of(const Session& session);

@@ -41,6 +41,7 @@ void BackEnd::load(Session session) {
   }
   session_ = std::move(session);
   first_frame_ = session_.frames.size();
+  loaded_submap_ = main_submap(session_);
   loops_.set_places(index_of(session_.map));
   const std::vector<SubmapId> submaps = session_.map.submaps();
   if (!submaps.empty()) next_submap_ = SubmapId(submaps.back().value + 1);
@@ -81,6 +82,12 @@ void BackEnd::count_landmarks(const TrackedFrame& tracked) {
   for (const LandmarkId id : tracked.landmarks) {
     if (id.valid()) session_.map.count_found(id);
   }
+}
+
+bool BackEnd::is_in_loaded(KeyframeId keyframe) const {
+  const Map& map = session_.map;
+  return loaded_submap_.valid() &&
+         map.keyframe(map.anchor(keyframe).keyframe).submap == loaded_submap_;
 }
 
 KeyframeId BackEnd::insert_keyframe(const RgbdFrame& frame,
@@ -169,7 +176,8 @@ PointCloud BackEnd::map_with_poses(std::span<const std::optional<Eigen::Isometry
   return dense_.map_of(posed, threads);
 }
 
-Session BackEnd::take_session(double readout_s) {
+Session BackEnd::take_session(double readout_s, std::vector<KnownObject> objects) {
+  session_.objects = std::move(objects);
   session_.camera.readout_s = readout_s;
   return std::move(session_);
 }

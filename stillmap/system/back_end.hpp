@@ -63,6 +63,8 @@ class BackEnd {
   void remember_movers(double stamp_s, std::vector<MoverSighting> movers) {
     dense_.remember_movers(stamp_s, std::move(movers));
   }
+  /// Whether a key frame is in the submap of a loaded session that has most of its frames.
+  [[nodiscard]] bool is_in_loaded(KeyframeId keyframe) const;
   /// Tracking was lost.
   void lost() { loops_.tracking_lost(); }
 
@@ -77,8 +79,8 @@ class BackEnd {
   [[nodiscard]] PointCloud map_with_poses(
       std::span<const std::optional<Eigen::Isometry3d>> T_world_frames, std::size_t threads) const;
 
-  /// The session to be saved. No other member may be called afterwards.
-  [[nodiscard]] Session take_session(double readout_s);
+  /// The session to be saved, with the objects known. No other member may be called afterwards.
+  [[nodiscard]] Session take_session(double readout_s, std::vector<KnownObject> objects);
 
  private:
   [[nodiscard]] BackEnd inline_copy() const;
@@ -89,6 +91,7 @@ class BackEnd {
   Session session_;
   std::size_t first_frame_ = 0;  // of this run in the session
   SubmapId next_submap_{0};
+  SubmapId loaded_submap_;  // with most frames of the loaded session
   Eigen::Isometry3d T_odometry_world_ = Eigen::Isometry3d::Identity();
   std::vector<ClosedLoop> closed_loops_;
 

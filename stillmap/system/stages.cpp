@@ -196,6 +196,9 @@ FrameResult System::Stages::remember(const Outcome& outcome) {
     dynamics->forget();
     result.objects = judged.judged.states;
   } else {
+    if (back_end.is_in_loaded(tracked.reference)) {
+      dynamics->place_known_objects(back_end.T_odometry_world(), frame->stamp.seconds);
+    }
     const std::size_t record = back_end.record(*frame, tracked);
     back_end.remember_movers(frame->stamp.seconds, judged.movers);
     if (!localize_only && origin == MaskOrigin::kOwn) {

@@ -92,11 +92,14 @@ void System::load(Session session) {
   Stages& s = *stages_;
   STILLMAP_CHECK(s.frame_number == 0);
   check_fits(session, s.camera, s.extractor.level_scales(), "the saved map");
+  s.dynamics->know_objects(std::move(session.objects));
   s.back_end.load(std::move(session));
 }
 
 Session System::take_session() {
-  return stages_->back_end.take_session(readout_s());
+  BackEnd& back_end = stages_->back_end;
+  return back_end.take_session(readout_s(),
+                               stages_->dynamics->known_objects(back_end.T_odometry_world()));
 }
 
 const Map& System::map() const {

@@ -121,7 +121,34 @@ inline Map map(const TestSessionSize& size, std::mt19937& rng) {
         {static_cast<std::uint32_t>(i),
          std::make_shared<const StaticView>(test_session_detail::view(size, i % 2 == 0, rng))});
   }
+  for (std::uint32_t track : {2U, 5U}) {
+    KnownObject object;
+    object.track = TrackId(track);
+    object.class_name = track == 2 ? "chair" : "";
+    object.seen_s = 12.5;
+    object.sightings = 7;
+    if (track == 2) {
+      object.surface = {random_point(rng), random_point(rng)};
+      object.extent.extend(random_point(rng));
+      object.extent.extend(random_point(rng));
+      object.extent_area_m2 = 0.5;
+      object.colors[3] = 1;
+    }
+    session.objects.push_back(std::move(object));
+  }
   return session;
+}
+
+inline void expect_same(const KnownObject& a, const KnownObject& b) {
+  EXPECT_EQ(a.track, b.track);
+  EXPECT_EQ(a.class_name, b.class_name);
+  EXPECT_EQ(a.seen_s, b.seen_s);
+  EXPECT_EQ(a.sightings, b.sightings);
+  EXPECT_EQ(a.surface, b.surface);
+  EXPECT_EQ(a.extent.min(), b.extent.min());
+  EXPECT_EQ(a.extent.max(), b.extent.max());
+  EXPECT_EQ(a.extent_area_m2, b.extent_area_m2);
+  EXPECT_EQ(a.colors, b.colors);
 }
 
 inline void expect_same(const CameraModel& a, const CameraModel& b) {
@@ -179,6 +206,8 @@ inline void expect_same_without_views(const Session& a, const Session& b) {
     EXPECT_EQ(a.frames[i].reference, b.frames[i].reference);
     EXPECT_EQ(a.frames[i].T_reference_frame.matrix(), b.frames[i].T_reference_frame.matrix());
   }
+  ASSERT_EQ(a.objects.size(), b.objects.size());
+  for (std::size_t i = 0; i < a.objects.size(); ++i) expect_same(a.objects[i], b.objects[i]);
 }
 
 /// Expects two sessions to be equal in every field.

@@ -95,6 +95,16 @@ class JudgingStage final : public DynamicsStage {
   [[nodiscard]] std::vector<UnitedTracks> united_tracks() const override {
     return identities_.united();
   }
+  void know_objects(std::vector<KnownObject> objects) override {
+    identities_.know(std::move(objects));
+  }
+  void place_known_objects(const Eigen::Isometry3d& T_odometry_world, double now_s) override {
+    if (identities_.has_unplaced()) identities_.place(T_odometry_world, now_s);
+  }
+  [[nodiscard]] std::vector<KnownObject> known_objects(
+      const Eigen::Isometry3d& T_odometry_world) const override {
+    return identities_.all_in_world(T_odometry_world);
+  }
 
  private:
   /// A remembered frame.

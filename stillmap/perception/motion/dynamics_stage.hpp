@@ -133,6 +133,17 @@ class DynamicsStage {
   /// The tracks of earlier frames that turned out to be of one object, in the order of finding.
   [[nodiscard]] virtual std::vector<UnitedTracks> united_tracks() const { return {}; }
 
+  /// Knows the objects of an earlier run, in the world frame of its map, as ObjectIdentities does.
+  virtual void know_objects(std::vector<KnownObject> /*objects*/) {}
+  /// Places them when the camera has been found in that map.
+  virtual void place_known_objects(const Eigen::Isometry3d& /*T_odometry_world*/,
+                                   double /*now_s*/) {}
+  /// All objects known, in the world frame.
+  [[nodiscard]] virtual std::vector<KnownObject> known_objects(
+      const Eigen::Isometry3d& /*T_odometry_world*/) const {
+    return {};
+  }
+
   /// Tells the stage that tracking was lost: the next frame with a pose does not continue the last.
   /// Older frames are kept, because they are in the same odometry frame. They show moving people as
   /// soon as the camera is relocalised nearby.

@@ -17,6 +17,7 @@ constexpr double kSoon_s = 5;              // within it a person near the last p
 constexpr double kLeastShareOfArea = 0.2;  // of the largest sighting, to be found by colors
 constexpr double kSamePlace_m = 0.25;      // two things are not in one place
 constexpr double kPartOfWhole = 0.5;       // greatest area of a part
+constexpr double kBetweenRuns_s = 3600;    // then a person may be anywhere
 constexpr int kYoung = 5;                  // sightings after which an object is known
 constexpr float kColorGain = 0.1F;
 
@@ -52,6 +53,12 @@ Eigen::AlignedBox3d extent_of(const std::vector<Eigen::Vector3d>& points) {
 }
 
 }  // namespace
+
+KnownObject moved(KnownObject object, const Eigen::Isometry3d& T) {
+  for (Eigen::Vector3d& p : object.surface) p = T * p;
+  if (!object.extent.isEmpty()) object.extent = object.extent.transformed(T);
+  return object;
+}
 
 ObjectIdentities::ObjectIdentities(const IdentityConfig& config,
                                    const CategoryTable& categories,
@@ -322,6 +329,29 @@ std::vector<TrackId> ObjectIdentities::identify(
     movers_.push_back({object.track, std::move(sighting.look.surface)});
   }
   return tracks;
+}
+
+void ObjectIdentities::know(std::vector<KnownObject> objects) {
+  unplaced_ = std::move(objects);
+  if (!unplaced_.empty()) next_track_ = unplaced_.back().track.value + 1;
+}
+
+void ObjectIdentities::place(const Eigen::Isometry3d& T_odometry_world, double now_s) {
+  for (KnownObject& object : unplaced_) {
+    object = moved(std::move(object), T_odometry_world);
+    object.seen_s = now_s - kBetweenRuns_s;
+  }
+  known_.insert(known_.begin(), unplaced_.begin(), unplaced_.end());
+  unplaced_.clear();
+}
+
+std::vector<KnownObject> ObjectIdentities::all_in_world(
+    const Eigen::Isometry3d& T_odometry_world) const {
+  std::vector<KnownObject> objects = unplaced_;
+  for (const KnownObject& object : known_) {
+    objects.push_back(moved(object, T_odometry_world.inverse()));
+  }
+  return objects;
 }
 
 }  // namespace stillmap

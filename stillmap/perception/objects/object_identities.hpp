@@ -69,6 +69,9 @@ struct KnownObject {
   ColorShares colors{};                  ///< running mean
 };
 
+/// The object under another transform of its frame.
+[[nodiscard]] KnownObject moved(KnownObject object, const Eigen::Isometry3d& T);
+
 /// What a frame shows of an object that moves by itself.
 struct MoverSighting {
   TrackId track;
@@ -100,9 +103,21 @@ class ObjectIdentities {
       std::span<const ObjectDepths> depths,
       const std::optional<Eigen::Isometry3d>& T_odometry_camera);
 
+  /// Knows the objects of an earlier run, which it finds again once place() has told where they
+  /// are.
+  void know(std::vector<KnownObject> objects);
+  /// Places the objects of know(): their frame in the odometry frame, at the time of the next
+  /// frame.
+  void place(const Eigen::Isometry3d& T_odometry_world, double now_s);
+  /// Whether objects of know() have no place yet.
+  [[nodiscard]] bool has_unplaced() const { return !unplaced_.empty(); }
+  /// All objects, by track, in the world frame; those without a place as they were.
+  [[nodiscard]] std::vector<KnownObject> all_in_world(
+      const Eigen::Isometry3d& T_odometry_world) const;
+
   /// What the frame of the last identify() shows of the objects that move by themselves.
   [[nodiscard]] const std::vector<MoverSighting>& movers() const { return movers_; }
-  /// All objects, by track.
+  /// All objects that have a place, by track.
   [[nodiscard]] const std::vector<KnownObject>& known() const { return known_; }
   /// The tracks of earlier frames that turned out to be of one object, in the order of finding.
   [[nodiscard]] const std::vector<UnitedTracks>& united() const { return united_; }
@@ -154,8 +169,9 @@ class ObjectIdentities {
   IdentityConfig config_;
   CategoryTable categories_;
   CameraModel camera_;
-  std::vector<KnownObject> known_;  // by track
-  std::vector<Joined> joined_;      // tracks of the ObjectTracker that may go on
+  std::vector<KnownObject> known_;     // by track
+  std::vector<KnownObject> unplaced_;  // by track
+  std::vector<Joined> joined_;         // tracks of the ObjectTracker that may go on
   std::vector<UnitedTracks> united_;
   std::vector<MoverSighting> movers_;
   std::uint32_t next_track_ = 0;

@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -80,6 +82,10 @@ class Room {
     return tracks;
   }
 
+  void know(std::vector<KnownObject> objects) { identities_.know(std::move(objects)); }
+  void place(const Eigen::Isometry3d& T_odometry_world, double now_s) {
+    identities_.place(T_odometry_world, now_s);
+  }
   [[nodiscard]] const ObjectIdentities& identities() const { return identities_; }
 
  private:
@@ -160,6 +166,23 @@ TEST(ObjectIdentities, TracksThatTurnOutToBeOneAreUnited) {
   EXPECT_EQ(room.identities().united().front().later, TrackId(lost.at(0)));
   EXPECT_EQ(room.identities().united().front().earlier, TrackId(first.at(0)));
   EXPECT_EQ(room.identities().known().size(), 1U);
+}
+
+TEST(ObjectIdentities, AnEarlierRunsObjectsAreFoundWhereTheMapHasThem) {
+  Room earlier;
+  const Tracks chair = earlier.see(0, {{3, "chair", {0.2, 0, 2}}});
+  // The earlier run's world lies 1 m to the right of this run's odometry frame.
+  const Eigen::Isometry3d T_odometry_world(Eigen::Translation3d(1, 0, 0));
+  Room room;
+  room.know(earlier.identities().all_in_world(Eigen::Isometry3d::Identity()));
+  const Tracks lost = room.see(100, {{5, "chair", {0.2, 0, 2}}});
+  EXPECT_NE(lost, chair) << "its place is not known yet";
+  room.place(T_odometry_world, 101);
+  EXPECT_EQ(room.see(101, {{6, "chair", {1.2, 0, 2}}}, 1.0), chair);
+  EXPECT_EQ(room.see(102, {{5, "chair", {0.2, 0, 2}}}), lost);
+  const std::vector<KnownObject> saved = room.identities().all_in_world(T_odometry_world);
+  ASSERT_EQ(saved.size(), 2U);
+  EXPECT_NEAR(saved[0].extent.center().x(), 0.2, 0.03) << "in the world frame again";
 }
 
 }  // namespace
