@@ -61,17 +61,17 @@ std::vector<std::uint32_t> ids_of(const ObjectFeedStep& step) {
 // Steps until the look has come in; a look that never does ends in the test's time limit.
 ObjectFeedStep step_until_arrival(NetworkFeed& feed, std::uint32_t frame) {
   while (true) {
-    ObjectFeedStep step = feed.step(bare_frame(frame++), false);
+    ObjectFeedStep step = feed.step(bare_frame(frame++), {false, 1});
     if (!step.arrived.empty()) return step;
   }
 }
 
 TEST(NetworkFeed, WaitsForNothingWhileTheNetworkLooks) {
   GatedSegmenter segmenter;
-  NetworkFeed feed(segmenter, 1);
-  EXPECT_TRUE(feed.step(bare_frame(0), false).looking);
+  NetworkFeed feed(segmenter);
+  EXPECT_TRUE(feed.step(bare_frame(0), {false, 1}).looking);
   for (std::uint32_t i = 1; i < 20; ++i) {
-    const ObjectFeedStep step = feed.step(bare_frame(i), false);
+    const ObjectFeedStep step = feed.step(bare_frame(i), {false, 1});
     EXPECT_TRUE(step.arrived.empty());
     EXPECT_FALSE(step.looking);
   }
@@ -85,10 +85,10 @@ TEST(NetworkFeed, WaitsForNothingWhileTheNetworkLooks) {
 TEST(NetworkFeed, LeavesAGapBetweenLooks) {
   GatedSegmenter segmenter;
   segmenter.let_through(100);
-  NetworkFeed feed(segmenter, 5);
+  NetworkFeed feed(segmenter);
   std::vector<std::uint32_t> looked_at;
   for (std::uint32_t i = 0; i < 40; i += 2) {
-    if (feed.step(bare_frame(i), false).looking) looked_at.push_back(i);
+    if (feed.step(bare_frame(i), {false, 5}).looking) looked_at.push_back(i);
   }
   for (std::size_t i = 1; i < looked_at.size(); ++i) {
     EXPECT_GE(looked_at[i], looked_at[i - 1] + 5);
@@ -98,9 +98,9 @@ TEST(NetworkFeed, LeavesAGapBetweenLooks) {
 TEST(NetworkFeed, WaitsForTheOwnOfAFrameThatNeedsThem) {
   GatedSegmenter segmenter;
   segmenter.let_through(2);
-  NetworkFeed feed(segmenter, 30);
-  EXPECT_TRUE(feed.step(bare_frame(3), false).looking);
-  const ObjectFeedStep step = feed.step(bare_frame(4), true);
+  NetworkFeed feed(segmenter);
+  EXPECT_TRUE(feed.step(bare_frame(3), {false, 30}).looking);
+  const ObjectFeedStep step = feed.step(bare_frame(4), {true, 30});
   EXPECT_FALSE(step.looking);
   EXPECT_EQ(step.arrived.back().first->id, FrameId(4));
   EXPECT_EQ(ids_of(step).size(), 2U);  // and those of the look that was under way, first
@@ -110,14 +110,14 @@ TEST(NetworkFeed, HandsTheNetworksErrorOn) {
   GatedSegmenter segmenter;
   segmenter.fail();
   segmenter.let_through(1);
-  NetworkFeed feed(segmenter, 1);
-  EXPECT_EQ(error_of([&] { (void)feed.step(bare_frame(0), true); }), "the network is broken");
+  NetworkFeed feed(segmenter);
+  EXPECT_EQ(error_of([&] { (void)feed.step(bare_frame(0), {true, 1}); }), "the network is broken");
 }
 
 TEST(NetworkFeed, CanBeGivenUpWhileTheNetworkLooks) {
   GatedSegmenter segmenter;
-  NetworkFeed feed(segmenter, 1);
-  (void)feed.step(bare_frame(0), false);
+  NetworkFeed feed(segmenter);
+  (void)feed.step(bare_frame(0), {false, 1});
   segmenter.let_through(1);
 }
 
@@ -131,7 +131,7 @@ TEST(RecordedFeed, GivesTheSameAtTheSameSteps) {
                      {FrameId(5), {FrameId(1)}},
                      {FrameId(6), {FrameId(5), FrameId(6)}}});
   const auto step = [&](std::uint32_t i, bool needs_own) {
-    return feed.step(bare_frame(i), needs_own);
+    return feed.step(bare_frame(i), {needs_own, 1});
   };
   const ObjectFeedStep first = step(0, true);
   EXPECT_EQ(ids_of(first), std::vector<std::uint32_t>{0});
@@ -149,7 +149,9 @@ TEST(RecordedFeed, GivesTheSameAtTheSameSteps) {
 TEST(RecordedFeed, OfARunWithOtherSettingsIsRefused) {
   GatedSegmenter segmenter;
   RecordedFeed feed(segmenter, {{FrameId(3), {}}});
-  EXPECT_THAT(error_of([&] { (void)feed.step(bare_frame(3), true); }),
+  EXPECT_THAT(error_of([&] {
+                (void)feed.step(bare_frame(3), {true, 1});
+              }),
               testing::HasSubstr("the record has no objects of frame 3"));
 }
 

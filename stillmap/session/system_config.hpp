@@ -32,16 +32,22 @@ struct TrackingConfig {
 /// Settings of live runs.
 struct LiveConfig {
   int look_gap_frames = 3;
+  int look_rest_frames = 10;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("look_gap_frames",
-          self.look_gap_frames,
-          common_setting(FieldInfo{
-              "least number of frames between two frames given to the network in a live run",
-              "frames",
-              1,
-              1000}));
+    visit(
+        "look_gap_frames",
+        self.look_gap_frames,
+        common_setting(FieldInfo{
+            "least number of frames between two frames given to the network in a live run; 1 when "
+            "something comes into view or masks are uncertain",
+            "frames",
+            1,
+            1000}));
+    visit("look_rest_frames",
+          self.look_rest_frames,
+          FieldInfo{"that number while nothing moves", "frames", 1, 1000});
   }
 };
 

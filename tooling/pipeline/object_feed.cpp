@@ -23,18 +23,18 @@ std::pair<FramePtr, FrameDetections> NetworkFeed::finish_look() {
   return {std::move(look.frame), look.detections.get()};
 }
 
-ObjectFeedStep NetworkFeed::step(const FramePtr& frame, bool needs_own) {
+ObjectFeedStep NetworkFeed::step(const FramePtr& frame, const LookRequest& request) {
   ObjectFeedStep step;
   const auto is_ready = [&] {
     return look_->detections.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
   };
-  if (look_ && (needs_own || is_ready())) step.arrived.push_back(finish_look());
-  if (needs_own) {
+  if (look_ && (request.needs_own || is_ready())) step.arrived.push_back(finish_look());
+  if (request.needs_own) {
     look_at(frame);
     step.arrived.push_back(finish_look());
     return step;
   }
-  const auto gap = static_cast<std::uint32_t>(gap_frames_);
+  const auto gap = static_cast<std::uint32_t>(request.gap_frames);
   if (!look_ && (!last_ || frame->id.value >= last_->value + gap)) {
     look_at(frame);
     step.looking = true;
@@ -49,7 +49,7 @@ RecordedFeed::RecordedFeed(const Segmenter& segmenter, LiveRecord record)
   }
 }
 
-ObjectFeedStep RecordedFeed::step(const FramePtr& frame, bool needs_own) {
+ObjectFeedStep RecordedFeed::step(const FramePtr& frame, const LookRequest& request) {
   STILLMAP_CHECK(next_ < record_.size() && record_[next_].frame == frame->id);
   const LiveStep& recorded = record_[next_++];
   ObjectFeedStep step;
@@ -61,7 +61,7 @@ ObjectFeedStep RecordedFeed::step(const FramePtr& frame, bool needs_own) {
     if (id == frame->id) step.looking = false;
   }
   const bool has_own = !step.arrived.empty() && step.arrived.back().first->id == frame->id;
-  if (needs_own && !has_own) {
+  if (request.needs_own && !has_own) {
     throw Error(
         "the record has no objects of frame {}, which a map may begin with: it is of a run with "
         "other settings",

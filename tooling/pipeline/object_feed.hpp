@@ -22,6 +22,12 @@ struct ObjectFeedStep {
   bool looking = false;  ///< the network begins work on this frame
 };
 
+/// The look that a frame asks for.
+struct LookRequest {
+  bool needs_own = false;  ///< waits for the objects of this frame, which come last
+  int gap_frames = 1;      ///< least number of frames from the last look to one at this frame
+};
+
 /// The objects of some frames, which arrive while later frames are processed.
 class ObjectFeed {
  public:
@@ -30,20 +36,18 @@ class ObjectFeed {
   ObjectFeed& operator=(const ObjectFeed&) = delete;
   virtual ~ObjectFeed() = default;
 
-  /// To be called for each frame that is to be processed, in order. `needs_own`: waits for the
-  /// objects of this frame, which come last. Throws what the network throws.
-  [[nodiscard]] virtual ObjectFeedStep step(const FramePtr& frame, bool needs_own) = 0;
+  /// To be called for each frame that is to be processed, in order. Throws what the network throws.
+  [[nodiscard]] virtual ObjectFeedStep step(const FramePtr& frame, const LookRequest& request) = 0;
 };
 
-/// A network on a separate thread. It takes a frame whenever it is idle and `gap_frames` have
-/// passed since the last frame that it took.
+/// A network on a separate thread. It takes a frame whenever it is idle and the gap that the frame
+/// asks for has passed since the last frame that it took.
 class NetworkFeed : public ObjectFeed {
  public:
   /// `segmenter` outlives the object.
-  NetworkFeed(const Segmenter& segmenter, int gap_frames)
-      : segmenter_(segmenter), gap_frames_(gap_frames) {}
+  explicit NetworkFeed(const Segmenter& segmenter) : segmenter_(segmenter) {}
 
-  [[nodiscard]] ObjectFeedStep step(const FramePtr& frame, bool needs_own) override;
+  [[nodiscard]] ObjectFeedStep step(const FramePtr& frame, const LookRequest& request) override;
 
  private:
   struct Look {
@@ -54,7 +58,6 @@ class NetworkFeed : public ObjectFeed {
   [[nodiscard]] std::pair<FramePtr, FrameDetections> finish_look();
 
   const Segmenter& segmenter_;
-  int gap_frames_;
   std::optional<FrameId> last_;
   std::optional<Look> look_;
   // Low priority: tracking goes first. The last member, because its thread uses all others.
@@ -69,7 +72,7 @@ class RecordedFeed : public ObjectFeed {
 
   /// The frames must be those of the record. Throws Error where the record has no objects of a
   /// frame that needs its own.
-  [[nodiscard]] ObjectFeedStep step(const FramePtr& frame, bool needs_own) override;
+  [[nodiscard]] ObjectFeedStep step(const FramePtr& frame, const LookRequest& request) override;
 
  private:
   const Segmenter& segmenter_;

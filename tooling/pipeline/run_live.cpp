@@ -10,8 +10,10 @@
 #include "stillmap/concurrency/prefetcher.hpp"
 #include "stillmap/core/error.hpp"
 #include "stillmap/core/stopwatch.hpp"
+#include "stillmap/perception/motion/modes.hpp"
 #include "stillmap/perception/objects/object_tracker.hpp"
 #include "stillmap/sensor/clocked_stream.hpp"
+#include "tooling/pipeline/look_policy.hpp"
 #include "tooling/pipeline/object_feed.hpp"
 #include "tooling/pipeline/replayed_stream.hpp"
 
@@ -23,7 +25,7 @@ std::unique_ptr<ObjectFeed> make_feed(const LiveInput& input) {
   if (segmenter == nullptr) return nullptr;
   const std::optional<LiveRecord>& record = input.options.live->record;
   if (record) return std::make_unique<RecordedFeed>(*segmenter, *record);
-  return std::make_unique<NetworkFeed>(*segmenter, input.config.live.look_gap_frames);
+  return std::make_unique<NetworkFeed>(*segmenter);
 }
 
 /// The work on each frame that was not dropped.
@@ -33,7 +35,9 @@ class LiveLoop {
       : system_(system),
         log_(log),
         tracker_(input.config.dynamics.object_tracking(), FillRule::kCausal),
-        feed_(make_feed(input)) {}
+        feed_(make_feed(input)),
+        looks_(input.config.live,
+               dynamics_mode(input.config.dynamics.mode).jumps == JumpRule::kWarpedFrames) {}
 
   /// Returns the time from the beginning to the pose, ms.
   double process(const FramePtr& frame);
@@ -46,6 +50,7 @@ class LiveLoop {
   RunLog& log_;
   ObjectTracker tracker_;
   std::unique_ptr<ObjectFeed> feed_;
+  LookPolicy looks_;
   std::optional<FrameId> last_seen_;  // the last frame whose objects have arrived
   LiveResult result_;
 };
@@ -53,7 +58,7 @@ class LiveLoop {
 ObjectFeedStep LiveLoop::look(const FramePtr& frame) {
   LiveStep recorded{frame->id, {}, frame->stamp.text};
   ObjectFeedStep step;
-  if (feed_) step = feed_->step(frame, system_.needs_own_objects());
+  if (feed_) step = feed_->step(frame, {system_.needs_own_objects(), looks_.gap_frames()});
   for (const auto& arrived : step.arrived) recorded.objects_of.push_back(arrived.first->id);
   if (!step.arrived.empty()) last_seen_ = step.arrived.back().first->id;
   result_.report.looked_at += step.arrived.size();
@@ -87,6 +92,7 @@ double LiveLoop::process(const FramePtr& frame) {
   const double prepared_ms = preparing.lap_ms();
   if (feed_) log_.observers().on_stage_time("objects carried", prepared_ms);
   const FrameResult result = system_.process(frame, std::move(objects), origin);
+  looks_.observe(result);
   // Only after the pose, for which the caller waits.
   Stopwatch taking;
   for (FrameObjects& earlier : of_earlier) system_.take_objects(std::move(earlier));
