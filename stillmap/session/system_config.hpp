@@ -41,7 +41,7 @@ struct LiveConfig {
         self.look_gap_frames,
         common_setting(FieldInfo{
             "least number of frames between two frames given to the network in a live run; 1 when "
-            "something comes into view or masks are uncertain",
+            "something comes into view or somebody is seen first",
             "frames",
             1,
             1000}));

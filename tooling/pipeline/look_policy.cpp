@@ -12,17 +12,10 @@ constexpr double kHardlyAny = 0.002;  // share of the image: noise at edges
 constexpr double kMany = 0.005;       // a forearm at 2 m
 constexpr double kNew = 1.5;          // factor on the mean of the last frames
 constexpr double kMeanGain = 0.2;
-constexpr float kSureScore = 0.5F;
 
 double share_of(const Mask& mask) {
   if (mask.empty()) return 0;
   return static_cast<double>(cv::countNonZero(mask.mat)) / static_cast<double>(mask.mat.total());
-}
-
-bool is_uncertain(const ObjectState& object) {
-  const bool moves = object.motion.state == MotionState::kMoving ||
-                     object.motion.state == MotionState::kMovedBySomeone;
-  return object.dynamic && (moves || object.score < kSureScore);
 }
 
 }  // namespace
@@ -31,8 +24,13 @@ void LookPolicy::observe(const FrameResult& result) {
   const double jumped = share_of(result.depth_jumps);
   const bool came = jumped > kMany && jumped > kNew * jumped_;
   jumped_ += kMeanGain * (jumped - jumped_);
-  const bool any_dynamic = std::ranges::any_of(result.objects, &ObjectState::dynamic);
-  if (came || std::ranges::any_of(result.objects, is_uncertain)) {
+  bool any_dynamic = false, first_seen = false;
+  for (const ObjectState& object : result.objects) {
+    if (!object.dynamic) continue;
+    any_dynamic = true;
+    first_seen = known_.insert(object.track).second || first_seen;
+  }
+  if (came || first_seen) {
     gap_frames_ = 1;
   } else if (finds_jumps_ && !any_dynamic && jumped <= kHardlyAny) {
     gap_frames_ = std::max(config_.look_rest_frames, config_.look_gap_frames);

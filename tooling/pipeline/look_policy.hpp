@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 
 #include "stillmap/session/system_config.hpp"
 #include "stillmap/system/results.hpp"
@@ -10,10 +11,10 @@ namespace stillmap {
 
 /// Decides when the network of a live run looks again, from what the frames between its looks show.
 ///
-/// It looks at once when depth jumps appear, because something has come into view, or when an object
-/// that may move is uncertain: it is seen to move, so its carried mask soon lies beside it, or its
-/// score is low. It rests when no object is dynamic and no depth jumps; only in modes that find jumps
-/// does that mean that nothing moves. Else the gap is that of the settings.
+/// It looks at once when depth jumps appear, because something has come into view, or when an
+/// object that moves has just been seen for the first time, because one look may be wrong. It rests
+/// when no object is dynamic and no depth jumps; only in modes that find jumps does that mean that
+/// nothing moves. Else the gap is that of the settings.
 class LookPolicy {
  public:
   LookPolicy(const LiveConfig& config, bool finds_jumps)
@@ -29,6 +30,7 @@ class LookPolicy {
   LiveConfig config_;
   bool finds_jumps_;
   double jumped_ = 0;              // share of the image, running mean
+  std::set<TrackId> known_;        // of dynamic objects
   std::optional<int> gap_frames_;  // nothing before the first frame
 };
 

@@ -17,12 +17,11 @@ FrameResult frame(int jumping_pixels) {
   return result;
 }
 
-FrameResult with_person(float score, MotionState motion) {
+FrameResult with_person(std::uint32_t track) {
   FrameResult result = frame(0);
   ObjectState person;
   person.dynamic = true;
-  person.score = score;
-  person.motion.state = motion;
+  person.track = TrackId(track);
   result.objects = {person};
   return result;
 }
@@ -32,7 +31,8 @@ TEST(LookPolicy, RestsWhileNothingMoves) {
   EXPECT_EQ(policy.gap_frames(), 3) << "nothing is known yet";
   policy.observe(frame(5));
   EXPECT_EQ(policy.gap_frames(), 10);
-  policy.observe(with_person(0.9F, MotionState::kStill));
+  policy.observe(with_person(1));
+  policy.observe(with_person(1));
   EXPECT_EQ(policy.gap_frames(), 3) << "somebody sits there";
 }
 
@@ -45,13 +45,13 @@ TEST(LookPolicy, LooksAtOnceWhenSomethingComes) {
   EXPECT_EQ(policy.gap_frames(), 3) << "it is not new any more";
 }
 
-TEST(LookPolicy, LooksAtOnceWhereMasksAreUncertain) {
+TEST(LookPolicy, LooksAtOnceAgainWhenSomebodyIsSeenForTheFirstTime) {
   LookPolicy policy(kConfig, true);
-  policy.observe(with_person(0.9F, MotionState::kMoving));
+  policy.observe(with_person(1));
   EXPECT_EQ(policy.gap_frames(), 1);
-  policy.observe(with_person(0.9F, MotionState::kStill));
+  policy.observe(with_person(1));
   EXPECT_EQ(policy.gap_frames(), 3);
-  policy.observe(with_person(0.3F, MotionState::kStill));
+  policy.observe(with_person(2));
   EXPECT_EQ(policy.gap_frames(), 1);
 }
 
