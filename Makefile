@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # From a fresh clone on Debian 12: `make demo` or `make test`, in either order. The work is CMake's;
 # this only installs what is missing and names the usual steps.
-.PHONY: setup models configure build program test test-fast demo api bench format tidy clean
+.PHONY: setup models configure build program test test-fast demo api bench format tidy fuzz sanitize clean
 .DEFAULT_GOAL := build
 
 program := build/release/bin/stillmap
@@ -80,6 +80,20 @@ tidy: setup
 	@tools/setup clang-tidy
 	@cmake --preset tidy
 	@cmake --build --preset tidy --parallel
+
+# Every fuzzer in turn, for MINUTES each (docs/fuzzing.md).
+fuzz: setup
+	@tools/setup clang libclang-rt-14-dev
+	@cmake --preset fuzz >/dev/null
+	@cmake --build --preset fuzz --parallel
+	@tools/fuzz build/fuzz/bin out/fuzz $(or $(MINUTES),5)
+
+# All tests under the address and undefined-behaviour sanitizers, then under the thread sanitizer.
+sanitize: setup
+	@for preset in asan tsan; do \
+	  cmake --preset $$preset >/dev/null && cmake --build --preset $$preset --parallel && \
+	  ctest --preset $$preset --parallel "$$(nproc)" --no-tests=error || exit 1; \
+	done
 
 clean:
 	rm -rf build out

@@ -3,10 +3,12 @@
 #include <exception>
 #include <new>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
+#include <opencv2/core/base.hpp>
 #include <opencv2/core/utility.hpp>
 #include <opencv2/core/version.hpp>
 
@@ -74,6 +76,14 @@ int run(const std::vector<std::string>& arguments) {
   return result.exit_code;
 }
 
+// Nothing here allocates.
+int out_of_memory() {
+  std::fputs(
+      "stillmap: out of memory: close other programs, or take a part of the sequence (--frames)\n",
+      stderr);
+  return kBadInput;
+}
+
 }  // namespace
 }  // namespace stillmap
 
@@ -86,7 +96,13 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "stillmap: {}\n", error.what());
     return stillmap::kBadInput;
   } catch (const std::bad_alloc&) {
-    std::fputs("stillmap: internal error: out of memory\n", stderr);
+    return stillmap::out_of_memory();
+  } catch (const cv::Exception& error) {
+    if (error.code == cv::Error::StsNoMem) return stillmap::out_of_memory();
+    fmt::print(stderr, "stillmap: internal error: {}\n", error.err);
+  } catch (const std::system_error& error) {  // no more threads, for example
+    fmt::print(stderr, "stillmap: the system refuses what the program needs: {}\n", error.what());
+    return stillmap::kBadInput;
   } catch (const std::exception& error) {
     fmt::print(stderr, "stillmap: internal error: {}\n", error.what());
   } catch (...) {

@@ -7,6 +7,7 @@ set(stillmap_slow_tests_dense FreeSpace.* System.* ViewChoice.* VoxelGrid.Agrees
 set(stillmap_slow_tests_detections DetectionsFolder.Re*)
 set(stillmap_slow_tests_eval SeeThrough.* StitchedMap.*)
 set(stillmap_slow_tests_export FindFloor.* MakeOccupancyGrid.*)
+set(stillmap_slow_tests_faults *)
 set(stillmap_slow_tests_features CornerScores.*)
 set(stillmap_slow_tests_io InflateWhole.*)
 set(stillmap_slow_tests_mapping MapLocally.WithTracking*)

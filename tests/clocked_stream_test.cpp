@@ -72,6 +72,38 @@ TEST(ClockedStream, OneLateFrameCostsNothingIfTheNextIsFast) {
   EXPECT_EQ(take_all(1.0, work_s).dropped, 1U);
 }
 
+// Frames with the stamps given, and nothing in their images.
+class StampedStream : public FrameStream {
+ public:
+  explicit StampedStream(std::vector<double> stamps_s) : stamps_s_(std::move(stamps_s)) {}
+  [[nodiscard]] const CameraModel& camera() const override { return camera_; }
+  [[nodiscard]] std::optional<StreamedFrame> next() override {
+    if (next_ == stamps_s_.size()) return std::nullopt;
+    auto frame = std::make_shared<RgbdFrame>();
+    frame->id = FrameId(static_cast<std::uint32_t>(next_));
+    frame->stamp.seconds = stamps_s_[next_++];
+    return frame;
+  }
+
+ private:
+  CameraModel camera_;
+  std::vector<double> stamps_s_;
+  std::size_t next_ = 0;
+};
+
+TEST(ClockedStream, DoesNotWaitForLongPauses) {
+  TestClock clock;
+  StampedStream stream({0, 60, 120.5, 1e9, 2e9, 2e9 + 0.25});
+  ClockedStream camera(stream, 2, clock);
+  const double begin_s = clock.now_s();
+  std::vector<double> at_s;
+  while (camera.next()) at_s.push_back(clock.now_s() - begin_s);
+  ASSERT_EQ(at_s.size(), 6U);
+  const std::vector<double> expected = {0, 30, 30.5, 31, 31.5, 31.625};
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(at_s[i], expected[i], 1e-6) << i;
+  EXPECT_NEAR(camera.skipped_s(), 2e9 - 60 - 3, 1e-3);
+}
+
 TEST(ClockedStream, CanBeGivenUp) {
   TestClock clock;
   TumFolder wall(wall_sequence());

@@ -205,7 +205,13 @@ TEST_F(Export, RefusesWrongArguments) {
   expect_refused("result --octomap a", "ends in .bt or .ot");
   expect_refused("result --grid a.pgm", "ends in .yaml or .yml");
   expect_refused("result --ply a.ply --ply-ascii ./a.ply", "another option names the same file");
-  expect_refused("result --ply result/map.ply", "the run's own map");
+  expect_refused("result --ply result/map.ply", "this is the input result/map.ply");
+  expect_refused("result --grid result/camera.yaml", "would be overwritten");
+  expect_refused("result --grid result/config.yaml", "would be overwritten");
+  write("c.yaml", content("result/camera.yaml"));
+  expect_refused("result --grid ./c.yaml --camera c.yaml", "this is the input c.yaml");
+  std::filesystem::create_hard_link(folder_ / "result/map.ply", folder_ / "twin.ply");
+  expect_refused("result --ply twin.ply", "this is the input result/map.ply");
   expect_refused("result --octomap a.bt --resolution nan", "--resolution");
   expect_refused("result --octomap a.bt --resolution 0", "--resolution");
   expect_refused("result --grid a.yaml --min-height 2", "--max-height");

@@ -178,23 +178,113 @@ TEST_F(Run, SkipsOneDamagedImageInALongSequenceAndSaysSo) {
 
 TEST_F(Run, RefusesAFolderThatCannotBeWritten) {
   write("file", "");
-  expect_refused("wall --out file", "file: cannot make this folder");
+  expect_refused("wall --out file", "file: the folder cannot be made");
   expect_refused("wall --out /proc/results", "/proc/results");
   expect_refused("wall --out /dev/full/results", "/dev/full/results");
 }
 
-TEST_F(Run, AFullDiskIsOneLineAndLeavesNoHalfFile) {
+TEST_F(Run, AFullDiskIsOneLineAndLeavesTheOldResultsWhole) {
+  std::filesystem::create_directories(folder_ / "out");
+  write("out/trajectory.txt", "old");
+  write("out/objects.jsonl", "old");
+  write("out/notes.txt", "foreign");
   // No file beyond 64 KiB: the map does not fit, the trajectory does.
   const Outcome outcome =
       run("config > /dev/null; ulimit -f 128; trap '' XFSZ; '" STILLMAP_BINARY_DIR
           "/bin/stillmap' run wall --out out");
   EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, MatchesRegex("stillmap: [^\n]*map.ply[^\n]*\n"));
-  EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / "trajectory.txt"));
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "out" / "map.ply"));
+  EXPECT_THAT(outcome.err, MatchesRegex("stillmap: [^\n]*out/map.ply[^\n]*\n"));
+  std::set<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(folder_ / "out")) {
-    EXPECT_THAT(entry.path().filename().string(), testing::Not(HasSubstr("tmp")));
+    names.insert(entry.path().filename().string());
   }
+  EXPECT_EQ(names, (std::set<std::string>{"notes.txt", "objects.jsonl", "trajectory.txt"}));
+  EXPECT_EQ(content("out/trajectory.txt") + content("out/objects.jsonl"), "oldold");
+  // With room, all of it is new, and what this run has not is gone.
+  ASSERT_EQ(run("run wall --out out").exit_code, 0);
+  EXPECT_GT(content("out/trajectory.txt").size(), 1000U);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out" / "objects.jsonl"));
+  EXPECT_EQ(content("out/notes.txt"), "foreign");
+}
+
+TEST_F(Run, NeverOverwritesItsInput) {
+  const std::string camera = content("wall/camera.yaml");
+  std::filesystem::create_directories(folder_ / "out");
+  for (const char* name : {"config.yaml", "live.jsonl", "map.stillmap", "trajectory.txt"}) {
+    write(std::string("out/") + name, content("wall/groundtruth.txt"));
+  }
+  std::filesystem::copy(folder_ / "wall/camera.yaml", folder_ / "out/camera.yaml");
+  for (const char* arguments : {"wall --out wall",
+                                "wall --out wall/rgb/x",
+                                "wall --out wall/depth",
+                                "wall --out out/../wall/./",
+                                "wall --out x --write-objects wall/truth",
+                                "wall --out out --camera out/camera.yaml",
+                                "wall --out out --groundtruth out/trajectory.txt"}) {
+    const Outcome outcome = run(std::string("run ") + arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments;
+    EXPECT_THAT(outcome.err, MatchesRegex("stillmap: [^\n]*would be overwritten[^\n]*\n"));
+  }
+  EXPECT_EQ(content("wall/camera.yaml"), camera);
+  EXPECT_THAT(run("run wall --out x --write-objects x/").err, HasSubstr("is the folder of --out"));
+  write("wall/camera.yaml", "");  // nor does a file come into being that the next run would read
+  std::filesystem::remove(folder_ / "wall/camera.yaml");
+  EXPECT_THAT(run("run wall --out wall --camera out/camera.yaml").err,
+              HasSubstr("would be overwritten"));
+}
+
+TEST_F(Run, CountsJpegsThatLackNoPixel) {
+  std::string list;
+  for (int i = 0; i < 10; ++i) {
+    const ColorImage color = read_color(rgb(i));
+    const std::vector<std::uint8_t> bytes = encode_jpeg(color, 95);
+    const bool odd = i % 3 == 1;
+    write("wall/rgb/" + stamp(i) + ".png", std::string(bytes.begin(), bytes.end() - (odd ? 2 : 0)));
+  }
+  const Outcome outcome = run("run wall --out out --frames 0:10");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err,
+              MatchesRegex("stillmap: warning: 3 images are not quite in order, "
+                           "all pixels are there; the first: [^\n]*" +
+                           stamp(1) + "[^\n]*Premature end[^\n]*\n"));
+  const nlohmann::json report = nlohmann::json::parse(content("out/report.json"));
+  EXPECT_EQ(report["warnings"].size(), 1U);
+  EXPECT_EQ(report["frames"]["tracked"], 10);
+}
+
+TEST_F(Run, SaysWhyNothingWasTracked) {
+  for (int i = 0; i < 3; ++i) {
+    write("wall/depth/" + stamp(i) + ".png",
+          encode_depth_png(DepthImage(cv::Mat1f::zeros(240, 320)), 5000));
+    write("wall/depth/" + stamp(i + 3) + ".png",
+          encode_depth_png(DepthImage(cv::Mat1f(240, 320, 12.5F)), 5000));
+    write("wall/rgb/" + stamp(i + 6) + ".png", encode_png(ColorImage(cv::Mat3b::zeros(240, 320))));
+  }
+  const Outcome empty = run("run wall --out out --frames 0:3");
+  EXPECT_EQ(empty.exit_code, 3);
+  EXPECT_THAT(empty.err, HasSubstr("the depth images of 3 of the 3 frames measure nothing"));
+  EXPECT_THAT(run("run wall --out out --frames 3:6").err,
+              HasSubstr("the depth of 3 of the 3 frames is beyond 10 m nearly everywhere"));
+  EXPECT_THAT(run("run wall --out out --frames 6:9").err,
+              HasSubstr("3 of the 3 frames have hardly any corners"));
+  EXPECT_EQ(run("run wall --out out --frames 9:12").err, "");
+}
+
+// Nanoseconds, unless they are read as such.
+TEST_F(Run, NamesAbsurdStamps) {
+  std::string rgb_list, depth_list;
+  for (int i = 0; i < 4; ++i) {
+    const std::string absurd = fmt::format("{}", 100000000 * (i + 1));
+    rgb_list += absurd + " rgb/" + stamp(i) + ".png\n";
+    depth_list += absurd + " depth/" + stamp(i) + ".png\n";
+  }
+  write("wall/rgb.txt", rgb_list);
+  write("wall/depth.txt", depth_list);
+  const Outcome outcome = run("run wall --out out --live --speed 100");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("the frames are 1e+08 s apart on average"));
+  EXPECT_THAT(outcome.err, HasSubstr("299999997 s in all were not waited for"));
+  EXPECT_THAT(content("out/report.html"), HasSubstr("of path<"));
 }
 
 TEST_F(Run, LostForGoodIsExitCodeThree) {

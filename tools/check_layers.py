@@ -30,7 +30,7 @@ TOPS = {
     "tests": {"stillmap", "tooling", "simulation", "tests"},
     "examples": {"stillmap", "examples"},
     "bench": {"stillmap", "tooling", "simulation", "tests", "bench"},
-    "fuzz": {"stillmap", "tests", "fuzz"},
+    "fuzz": {"stillmap", "tooling", "tests", "fuzz"},
 }
 SUPPORT = "tests/support"
 TABLE_FILE = "docs/architecture.md"

@@ -4,20 +4,24 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/core.h>
 
+#include "apps/command_inputs.hpp"
 #include "apps/commands.hpp"
 #include "apps/commands/export_source.hpp"
 #include "stillmap/core/error.hpp"
 #include "stillmap/core/joined.hpp"
 #include "stillmap/io/atomic_file.hpp"
+#include "stillmap/io/input_files.hpp"
 #include "stillmap/io/ply.hpp"
 #include "tooling/export/floor_plane.hpp"
 #include "tooling/export/occupancy_grid.hpp"
 #include "tooling/export/octree.hpp"
 #include "tooling/export/pcd.hpp"
+#include "tooling/pipeline/run_folder.hpp"
 
 namespace stillmap {
 namespace {
@@ -62,8 +66,28 @@ const std::vector<FormatOption>& format_options() {
   return options;
 }
 
-// The checks that need no file.
+fs::path image_of_grid(const fs::path& grid) {
+  return fs::path(grid).replace_extension(".pgm");
+}
+
+// The files of the run, whether they are read or not.
+InputFiles input_files(const ExportArguments& arguments) {
+  InputFiles inputs;
+  std::error_code ignored;
+  if (fs::is_directory(arguments.source, ignored)) {
+    for (const std::string_view name : run_file_names()) {
+      inputs.add(fs::path(arguments.source) / name);
+    }
+  } else {
+    inputs.add(arguments.source);
+  }
+  add_camera(inputs, arguments.camera);
+  return inputs;
+}
+
+// The checks that need no content of a file.
 void check_arguments(const ExportArguments& arguments) {
+  const InputFiles inputs = input_files(arguments);
   std::vector<fs::path> targets;
   for (const FormatOption& option : format_options()) {
     const fs::path file = arguments.*option.file;
@@ -78,12 +102,11 @@ void check_arguments(const ExportArguments& arguments) {
     if (std::ranges::find(targets, target) != targets.end()) {
       throw Error("{} {}: another option names the same file", option.name, file.string());
     }
-    const fs::path source = arguments.source;
-    for (const fs::path& own : {source, source / "map.ply"}) {
-      if (target != fs::absolute(own).lexically_normal()) continue;
-      throw Error("{} {}: the run's own map; choose another name", option.name, file.string());
-    }
     targets.push_back(target);
+    inputs.check_output(option.name, file);
+    if (option.file == &ExportArguments::grid) {
+      inputs.check_output(option.name, image_of_grid(file));
+    }
   }
   if (targets.empty()) {
     throw Error(
@@ -140,7 +163,7 @@ void add_grid_files(std::vector<FileContent>& files,
                     const Eigen::Isometry3d& T_grid_map) {
   const OccupancyGrid grid = make_occupancy_grid(
       run.map.positions, run.T_world_keyframe, *run.camera, arguments.space, arguments.band);
-  const fs::path image = fs::path(arguments.grid).replace_extension(".pgm");
+  const fs::path image = image_of_grid(arguments.grid);
   files.push_back({image, encode_pgm(grid)});
   files.push_back({arguments.grid, format_grid_yaml(grid, image.filename().string(), T_grid_map)});
 }

@@ -7,6 +7,7 @@
 
 #include "apps/commands.hpp"
 #include "stillmap/core/error.hpp"
+#include "stillmap/io/input_files.hpp"
 #include "stillmap/session/merge_sessions.hpp"
 #include "stillmap/session/session_io.hpp"
 
@@ -20,6 +21,10 @@ struct MergeArguments {
 };
 
 void run_merge(const MergeArguments& arguments) {
+  InputFiles inputs;
+  inputs.add(arguments.first);
+  inputs.add(arguments.second);
+  inputs.check_output("--out", arguments.out);
   const Session first = read_session(arguments.first);
   const Session second = read_session(arguments.second);
   const std::optional<MergedSessions> merged = merge_sessions(first, second, arguments.second);

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -7,10 +6,12 @@
 
 #include <fmt/core.h>
 
+#include "apps/command_inputs.hpp"
 #include "apps/commands.hpp"
 #include "apps/image_names.hpp"
 #include "apps/option_value.hpp"
 #include "apps/run_progress.hpp"
+#include "apps/run_summary.hpp"
 #include "apps/steady_clock.hpp"
 #include "apps/version.hpp"
 #include "stillmap/config/config_io.hpp"
@@ -27,8 +28,6 @@
 #include "tooling/pipeline/object_folder.hpp"
 #include "tooling/pipeline/run_folder.hpp"
 #include "tooling/pipeline/run_sequence.hpp"
-#include "tooling/report/time_summary.hpp"
-#include "tooling/report/tracking_gaps.hpp"
 
 namespace stillmap {
 namespace {
@@ -117,11 +116,41 @@ ChosenSegmenter choose_segmenter(const RunArguments& arguments,
 }
 
 // The results' folder; that of the option, where it cannot be used.
-void prepare_out(const RunArguments& arguments) {
-  (void)option_value("--out", arguments.out, [](const std::string& folder) {
-    prepare_run_folder(folder);
-    return true;
+std::unique_ptr<RunFolder> prepare_out(const RunArguments& arguments) {
+  return option_value("--out", arguments.out, [](const std::string& folder) {
+    return std::make_unique<RunFolder>(folder);
   });
+}
+
+// No file that the run reads may be one that it writes.
+void check_outputs(const RunArguments& arguments, const TumSequence& sequence) {
+  InputFiles inputs;
+  add_sequence(inputs, arguments.sequence, sequence.entries());
+  add_segmenter(inputs, arguments.segmenter);
+  add_camera(inputs, arguments.camera);
+  for (const std::string& file :
+       {arguments.config_file, arguments.groundtruth, arguments.load, arguments.replay}) {
+    inputs.add(file);
+  }
+  const std::filesystem::path out = arguments.out, objects = arguments.objects_out;
+  for (const std::string_view name : run_file_names()) inputs.check_output("--out", out / name);
+  if (!objects.empty()) {
+    inputs.check_output("--write-objects", objects / "detections.jsonl");
+    inputs.check_output("--write-objects", objects / "masks");
+    std::error_code ignored;
+    if (std::filesystem::weakly_canonical(objects / "masks", ignored) ==
+        std::filesystem::weakly_canonical(out / "masks", ignored)) {
+      throw Error("--write-objects {}: is the folder of --out; name another, such as {}",
+                  arguments.objects_out,
+                  (out / "objects").string());
+    }
+  }
+  if (arguments.localize_only && path_exists(out / "map.stillmap")) {
+    throw Error(
+        "--out {}: holds a map.stillmap, which a run with --localize-only has not; name another "
+        "folder",
+        arguments.out);
+  }
 }
 
 std::optional<Trajectory> read_groundtruth(const RunArguments& arguments,
@@ -169,74 +198,6 @@ void evaluate_maps(SequenceRun& run, const SequenceTruth& truth) {
   }
 }
 
-std::string map_line(const RunReport& report) {
-  std::string text = fmt::format("map         {} points", report.map->size());
-  if (report.map_quality) text += fmt::format(", sa {:.3f}", report.map_quality->sa);
-  if (report.map_quality && report.map_quality->da) {
-    text += fmt::format(", da {:.3f}", *report.map_quality->da);
-  }
-  return text + (report.map_at_true_poses ? ", at true poses\n" : "\n");
-}
-
-std::string live_line(const RunReport& report) {
-  if (!report.live) return {};
-  const LiveReport& live = *report.live;
-  std::string text = fmt::format("live        {} of {} frames dropped, {} looked at",
-                                 live.dropped,
-                                 report.frames_total,
-                                 live.looked_at);
-  if (const std::optional<TimeSummary> latency = summarize_times(live.latency_ms)) {
-    text += fmt::format(
-        "; pose after {:.0f} ms (median), {:.0f} ms (95 %)", latency->median, latency->p95);
-  }
-  return text + "\n";
-}
-
-std::string gap_lines(const RunReport& report) {
-  constexpr std::size_t kMost = 5;
-  const std::vector<TrackingGap> gaps = tracking_gaps(report.lost, report.estimate);
-  std::string text;
-  for (std::size_t i = 0; i < std::min(gaps.size(), kMost); ++i) {
-    text += fmt::format("no pose     {}\n", gap_text(gaps[i]));
-  }
-  if (gaps.size() > kMost) text += fmt::format("            and {} more\n", gaps.size() - kMost);
-  return text;
-}
-
-std::string summary(const RunArguments& arguments,
-                    const RunReport& report,
-                    const std::string& objects_line) {
-  std::string text = fmt::format("objects     {}\ntracked     {} of {} frames, {} key frames\n",
-                                 objects_line,
-                                 report.frames_tracked,
-                                 report.frames_total,
-                                 report.keyframes.size());
-  text += gap_lines(report);
-  if (report.ate) {
-    text += fmt::format("ATE         {:.4f} m rmse over {} poses\n",
-                        report.ate->translation_m.rmse,
-                        report.ate->pairs.size());
-  }
-  if (!report.loops.empty()) {
-    text += fmt::format("loops       {} closed\n", report.loops.size());
-  }
-  text += live_line(report);
-  text += map_line(report);
-  text += fmt::format("time        {:.1f} s, {:.1f} frames a second\n",
-                      *report.wall_s,
-                      static_cast<double>(report.frames_total) / *report.wall_s);
-  text += fmt::format("report      {}\n",
-                      (std::filesystem::path(arguments.out) / "report.html").string());
-  return text;
-}
-
-// The map of a run that only localises is the one that it was given.
-void save_session(Session& session, const RunArguments& arguments, const std::string& settings) {
-  if (arguments.localize_only) return;
-  session.config_yaml = settings;
-  write_session(std::filesystem::path(arguments.out) / "map.stillmap", session);
-}
-
 FrameSelection selected_frames(const RunArguments& arguments) {
   FrameSelection selection;
   if (!arguments.frames.empty()) {
@@ -276,7 +237,8 @@ int run(const RunArguments& arguments) {
   RunOptions options;
   if (!arguments.load.empty()) options.start = read_session(arguments.load);
   options.localize_only = arguments.localize_only;
-  prepare_out(arguments);
+  check_outputs(arguments, sequence);
+  const std::unique_ptr<RunFolder> out = prepare_out(arguments);
   options.segmenter = chosen.segmenter.get();
   options.threads = arguments.threads;
   options.live = live_options(arguments);
@@ -303,9 +265,11 @@ int run(const RunArguments& arguments) {
   if (truth) evaluate_maps(run, *truth);
   const std::optional<std::string> live_lines =
       arguments.live ? std::optional(live_jsonl(run.live_record)) : std::nullopt;
-  write_run_folder(arguments.out, run.result, report, {run.objects_jsonl, live_lines});
-  save_session(run.session, arguments, report.config_yaml);
-  print_output(summary(arguments, report, chosen.line));
+  run.session.config_yaml = report.config_yaml;
+  // The map of a run that only localises is the one that it was given.
+  const Session* const session = arguments.localize_only ? nullptr : &run.session;
+  out->write(run.result, report, {run.objects_jsonl, live_lines}, session);
+  print_output(run_summary(report, chosen.line, arguments.out));
   return run.result.lost_at_end ? kLostForGood : 0;
 }
 

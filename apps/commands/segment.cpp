@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <set>
 #include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
+#include "apps/command_inputs.hpp"
 #include "apps/commands.hpp"
 #include "apps/image_names.hpp"
 #include "apps/option_value.hpp"
@@ -23,6 +20,7 @@
 #include "stillmap/perception/detections/class_names.hpp"
 #include "stillmap/perception/detections/detections_io.hpp"
 #include "stillmap/perception/segmentation/segmenter.hpp"
+#include "stillmap/sensor/image_warnings.hpp"
 #include "stillmap/sensor/tum_lists.hpp"
 #include "tooling/pipeline/object_watch.hpp"
 
@@ -38,42 +36,18 @@ struct SegmentArguments {
   std::size_t threads = 2;
 };
 
-// The detections of a frame, and the reason why its image could not be read, if it could not.
-using Found = std::pair<FrameDetections, std::optional<std::string>>;
+struct Found {
+  FrameDetections detections;
+  std::string damage;   // why the image could not be read; empty if it could
+  std::string warning;  // what is wrong with its file beside the pixels
+};
 
-bool is_in(const fs::path& path, const fs::path& folder) {
-  const auto [rest, unused] = std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
-  return rest == folder.end();
-}
-
-// The canonical form of a path, whether it exists or not.
-fs::path place_of(const fs::path& path) {
-  std::error_code failure;
-  fs::path place = fs::weakly_canonical(path, failure);
-  if (failure) place = fs::absolute(path).lexically_normal();
-  return place.has_filename() ? place : place.parent_path();
-}
-
-// Results have the same file names as masks and detections of the input may have.
-void check_out(const SegmentArguments& arguments) {
-  const fs::path out = place_of(arguments.out), sequence = place_of(arguments.sequence);
-  bool overwrites = out == sequence;
-  for (const char* folder : {"rgb", "depth", "truth"}) {
-    overwrites = overwrites || is_in(out, place_of(sequence / folder));
-  }
-  constexpr std::string_view kFolder = "detections:", kMasks = "masks:";
-  if (arguments.segmenter.starts_with(kFolder)) {
-    overwrites = overwrites || out == place_of(arguments.segmenter.substr(kFolder.size()));
-  }
-  if (arguments.segmenter.starts_with(kMasks)) {
-    const fs::path masks = place_of(arguments.segmenter.substr(kMasks.size()));
-    overwrites = overwrites || out == masks || out / "masks" == masks;
-  }
-  if (!overwrites) return;
-  throw Error(
-      "--out {}: this is the input, which would be overwritten; name another folder such as {}",
-      arguments.out,
-      (fs::path(arguments.sequence) / "detections").string());
+void check_out(const SegmentArguments& arguments, const std::vector<SequenceEntry>& entries) {
+  InputFiles inputs;
+  add_sequence(inputs, arguments.sequence, entries);
+  add_segmenter(inputs, arguments.segmenter);
+  inputs.check_output("--out", fs::path(arguments.out) / "detections.jsonl");
+  inputs.check_output("--out", fs::path(arguments.out) / "masks");
 }
 
 // The size of the first image that can be read.
@@ -91,7 +65,7 @@ cv::Size image_size(const std::vector<SequenceEntry>& entries) {
 Found segment_frame(const Segmenter& segmenter, const SequenceEntry& entry, cv::Size size) {
   Found frame;
   try {
-    const ColorImage color = read_color(entry.color_file);
+    const auto [color, warning] = read_color_file(entry.color_file);
     if (color.mat.size() != size) {
       throw Error("{}: {}x{} pixels, expected {}x{} as the images before",
                   entry.color_file.string(),
@@ -100,11 +74,12 @@ Found segment_frame(const Segmenter& segmenter, const SequenceEntry& entry, cv::
                   size.width,
                   size.height);
     }
-    frame.first = segmenter.segment(color, entry.stamp);
+    frame.detections = segmenter.segment(color, entry.stamp);
+    frame.warning = warning;
   } catch (const DamagedImage& damage) {
-    frame.second = damage.what();
+    frame.damage = damage.what();
   }
-  frame.first.stamp = entry.stamp;
+  frame.detections.stamp = entry.stamp;
   return frame;
 }
 
@@ -115,8 +90,8 @@ void add_unknown_classes(const FrameDetections& frame, std::set<std::string>& un
 }
 
 void segment(const SegmentArguments& arguments) {
-  check_out(arguments);
   const std::vector<SequenceEntry> entries = read_sequence_entries(arguments.sequence);
+  check_out(arguments, entries);
   const cv::Size size = image_size(entries);
   // Frames are processed in parallel, each by one thread.
   const std::unique_ptr<Segmenter> segmenter =
@@ -127,6 +102,7 @@ void segment(const SegmentArguments& arguments) {
 
   std::size_t objects = 0;
   std::set<std::string> unknown;
+  ImageWarnings warnings;
   ProgressBar progress("frames");
   const auto start = std::chrono::steady_clock::now();
   produce_in_parallel(
@@ -134,13 +110,17 @@ void segment(const SegmentArguments& arguments) {
       arguments.threads,
       [&](std::size_t i) { return segment_frame(*segmenter, entries[i], size); },
       [&](std::size_t i, const Found& frame) {
-        if (frame.second) progress.warn(*frame.second + "; taken for a frame without objects");
-        writer.add(frame.first);
-        add_unknown_classes(frame.first, unknown);
-        objects += frame.first.objects.size();
+        if (!frame.damage.empty()) {
+          progress.warn(frame.damage + "; taken for a frame without objects");
+        }
+        warnings.add(frame.warning);
+        writer.add(frame.detections);
+        add_unknown_classes(frame.detections, unknown);
+        objects += frame.detections.objects.size();
         progress.show(i + 1, entries.size());
       });
   writer.finish();
+  for (const std::string& line : warnings.lines()) progress.warn(line);
   if (!unknown.empty()) progress.warn(unknown_classes_warning(unknown));
   progress.finish();
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;

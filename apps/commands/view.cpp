@@ -18,6 +18,7 @@
 #include "stillmap/core/nearest_name.hpp"
 #include "stillmap/io/atomic_file.hpp"
 #include "stillmap/io/image_io.hpp"
+#include "stillmap/io/input_files.hpp"
 #include "stillmap/io/trajectory_io.hpp"
 #include "tooling/eval/map_alignment.hpp"
 #include "tooling/eval/map_files.hpp"
@@ -116,6 +117,13 @@ std::string encoded(const ColorImage& picture, const std::string& file) {
 void view(const ViewArguments& arguments) {
   const std::vector<NamedSide> sides = chosen_sides(arguments.from);
   const PictureSize size = parse_picture_size(arguments.size);
+  InputFiles inputs;
+  for (const std::string& map : arguments.maps) {
+    inputs.add(map);
+    inputs.add(std::filesystem::path(map).parent_path() / "trajectory.txt");
+  }
+  inputs.add(arguments.groundtruth);
+  inputs.check_output("--out", arguments.out);
   const std::vector<PosedMap> maps = read_maps(arguments);
   const SceneFrame scene =
       scene_frame(maps.front().cloud, maps.front().cameras, up_axis(arguments.up));

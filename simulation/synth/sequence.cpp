@@ -2,7 +2,6 @@
 #include "simulation/synth/sequence.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 #include <set>
 
 #include <fmt/core.h>
@@ -10,6 +9,7 @@
 #include "simulation/scene/office.hpp"
 #include "stillmap/core/error.hpp"
 #include "stillmap/io/image_io.hpp"
+#include "stillmap/io/stamp_text.hpp"
 
 namespace stillmap {
 namespace {
@@ -80,10 +80,7 @@ double SyntheticSequence::time_s(FrameId id) const {
 
 Stamp SyntheticSequence::stamp(FrameId id) const {
   constexpr double kStart = 1000.0;
-  Stamp stamp;
-  stamp.text = fmt::format("{:.6f}", kStart + time_s(id));
-  stamp.seconds = std::strtod(stamp.text.c_str(), nullptr);  // the number that a reader parses
-  return stamp;
+  return parse_stamp(fmt::format("{:.6f}", kStart + time_s(id))).value();
 }
 
 Eigen::Isometry3d SyntheticSequence::pose(FrameId id) const {

@@ -2,8 +2,10 @@
 #include "simulation/synth/sequence_writer.hpp"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <system_error>
 
 #include <fmt/core.h>
@@ -12,7 +14,7 @@
 #include "simulation/synth/truth_maps.hpp"
 #include "stillmap/concurrency/parallel.hpp"
 #include "stillmap/core/error.hpp"
-#include "stillmap/io/atomic_file.hpp"
+#include "stillmap/io/folder_replacement.hpp"
 #include "stillmap/io/image_io.hpp"
 #include "stillmap/io/ply.hpp"
 #include "stillmap/io/trajectory_io.hpp"
@@ -24,30 +26,30 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void create_folder(const fs::path& folder) {
-  std::error_code failure;
-  fs::create_directories(folder, failure);
-  if (failure) {
-    throw Error("{}: the folder cannot be made ({}); name one in a place that can be written to",
-                folder.string(),
-                failure.message());
-  }
-}
-
 // A sequence is never mixed with existing files.
 void check_vacant(const fs::path& folder) {
-  std::error_code failure;
-  const fs::file_status status = fs::status(folder, failure);
-  if (!fs::exists(status)) return;
-  if (!fs::is_directory(status)) {
+  std::error_code ignored;
+  if (fs::exists(folder, ignored) && !fs::is_directory(folder, ignored)) {
     throw Error("{}: is a file, expected a folder for the sequence; name another", folder.string());
   }
-  const bool empty = fs::is_empty(folder, failure);
-  if (failure) throw Error("{}: cannot be read ({})", folder.string(), failure.message());
-  if (!empty) {
+  if (!is_vacant(folder)) {
     throw Error("{}: is not empty; name a new folder for the sequence or empty this one first",
                 folder.string());
   }
+}
+
+bool is_file_of_sequence(const fs::path& name) {
+  static constexpr std::array<std::string_view, 10> kNames = {"rgb",
+                                                              "depth",
+                                                              "truth",
+                                                              "detections",
+                                                              "assets.txt",
+                                                              "camera.yaml",
+                                                              "groundtruth.txt",
+                                                              "associations.txt",
+                                                              "depth.txt",
+                                                              "rgb.txt"};
+  return std::ranges::find(kNames, name.begin()->string()) != kNames.end();
 }
 
 struct Lists {
@@ -96,15 +98,14 @@ std::vector<TruthObject> truth_objects(const SyntheticSequence& sequence,
 // Renders a frame and writes its images.
 WrittenFrame write_frame(const SyntheticSequence& sequence,
                          const std::vector<TruthObject>& objects,
-                         const fs::path& folder,
+                         const FolderReplacement& result,
                          FrameId id) {
   const SyntheticFrame rendered = sequence.render(id);
   const RgbdFrame& frame = *rendered.frame;
   const std::string name = frame.stamp.text + ".png";
-  write_file_atomically(folder / "rgb" / name, encode_png(frame.color));
-  write_file_atomically(folder / "depth" / name,
-                        encode_depth_png(frame.depth, sequence.camera().depth_factor));
-  write_file_atomically(folder / "truth" / "masks" / name, encode_mask_png(rendered.truth.ids));
+  result.write("rgb/" + name, encode_png(frame.color));
+  result.write("depth/" + name, encode_depth_png(frame.depth, sequence.camera().depth_factor));
+  result.write("truth/masks/" + name, encode_mask_png(rendered.truth.ids));
 
   const ObjectMask ids(rendered.truth.ids);
   WrittenFrame written{rendered.truth,
@@ -130,12 +131,12 @@ class TruthFolder {
     frames_.push_back(frame.objects);
   }
 
-  void write(const fs::path& folder,
+  void write(const FolderReplacement& result,
              const CameraModel& camera,
              const std::vector<TruthObject>& objects) const {
-    write_file_atomically(folder / "static_map.ply", encode_ply(maps_.static_map()));
-    write_file_atomically(folder / "dynamic_map.ply", encode_ply(maps_.dynamic_map()));
-    write_file_atomically(folder / "objects.json", format_objects_json(camera, objects, frames_));
+    result.write("truth/static_map.ply", encode_ply(maps_.static_map()));
+    result.write("truth/dynamic_map.ply", encode_ply(maps_.dynamic_map()));
+    result.write("truth/objects.json", format_objects_json(camera, objects, frames_));
   }
 
  private:
@@ -146,11 +147,13 @@ class TruthFolder {
 // The folder of detections, if requested.
 class DetectionsMaker {
  public:
-  DetectionsMaker(const SyntheticSequence& sequence, const fs::path& folder, DetectionKind kind)
+  DetectionsMaker(const SyntheticSequence& sequence,
+                  const FolderReplacement& result,
+                  DetectionKind kind)
       : kind_(kind), faults_(sequence.options().seed) {
     const CameraModel& camera = sequence.camera();
     if (kind == DetectionKind::kNone) return;
-    writer_.emplace(folder, cv::Size(camera.width_px, camera.height_px));
+    writer_.emplace(result, "detections", cv::Size(camera.width_px, camera.height_px));
   }
 
   void add(const FrameTruth& truth) {
@@ -176,17 +179,17 @@ void write_sequence(const SyntheticSequence& sequence,
                     const WriteOptions& options,
                     const std::function<void(std::size_t, std::size_t)>& on_progress) {
   check_vacant(folder);
-  for (const char* name : {"rgb", "depth", "truth/masks"}) create_folder(folder / name);
+  FolderReplacement result(folder, is_file_of_sequence);
   const std::vector<int> moved = sequence.moved_ids();
   const std::vector<TruthObject> objects = truth_objects(sequence, moved);
   Lists lists;
   TruthFolder truth(sequence, moved);
-  DetectionsMaker detections(sequence, folder / "detections", options.detections);
+  DetectionsMaker detections(sequence, result, options.detections);
   produce_in_parallel(
       sequence.size(),
       options.threads,
       [&](std::size_t i) {
-        return write_frame(sequence, objects, folder, FrameId(static_cast<std::uint32_t>(i)));
+        return write_frame(sequence, objects, result, FrameId(static_cast<std::uint32_t>(i)));
       },
       [&](std::size_t i, const WrittenFrame& frame) {
         truth.add(frame, sequence.pose(frame.truth.frame));
@@ -195,16 +198,16 @@ void write_sequence(const SyntheticSequence& sequence,
         if (on_progress) on_progress(i + 1, sequence.size());
       });
   detections.finish();
-  truth.write(folder / "truth", sequence.camera(), objects);
+  truth.write(result, sequence.camera(), objects);
   if (sequence.options().assets) {
-    write_file_atomically(folder / "assets.txt", sequence.options().assets->credits);
+    result.write("assets.txt", sequence.options().assets->credits);
   }
-  // The lists come last: a folder with them is complete.
-  write_file_atomically(folder / "camera.yaml", format_camera_yaml(sequence.camera()));
-  write_file_atomically(folder / "groundtruth.txt", format_trajectory(sequence.ground_truth()));
-  write_file_atomically(folder / "associations.txt", lists.associations);
-  write_file_atomically(folder / "depth.txt", lists.depth);
-  write_file_atomically(folder / "rgb.txt", lists.rgb);
+  result.write("camera.yaml", format_camera_yaml(sequence.camera()));
+  result.write("groundtruth.txt", format_trajectory(sequence.ground_truth()));
+  result.write("associations.txt", lists.associations);
+  result.write("depth.txt", lists.depth);
+  result.write("rgb.txt", lists.rgb);
+  result.take_place();
 }
 
 }  // namespace stillmap

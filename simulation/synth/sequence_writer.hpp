@@ -25,7 +25,7 @@ struct WriteOptions {
 /// camera.yaml, groundtruth.txt, the folder truth/ and, on request, detections/. If assets are
 /// used, assets.txt credits their authors. `on_progress`, unless empty, is called with the numbers
 /// of finished and of all frames. Throws Error for a folder that is not empty, and when writing
-/// fails. The lists are written last, so that a folder with rgb.txt is complete.
+/// fails. The sequence appears in the folder all at once, when it is complete.
 void write_sequence(const SyntheticSequence& sequence,
                     const std::filesystem::path& folder,
                     const WriteOptions& options = {},

@@ -2,6 +2,7 @@
 #include "stillmap/io/atomic_file.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <deque>
 #include <memory>
@@ -13,70 +14,33 @@
 #include <unistd.h>
 
 #include "stillmap/core/error.hpp"
+#include "stillmap/io/descriptor.hpp"
+#include "stillmap/io/file_moves.hpp"
 
 namespace stillmap {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::string reason(int error_number) {
-  return std::generic_category().message(error_number);
-}
-
-// A file descriptor that its destructor closes.
-class Descriptor {
- public:
-  explicit Descriptor(int fd) : fd_(fd) {}
-  Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  Descriptor& operator=(Descriptor&&) = delete;
-  ~Descriptor() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-
-  [[nodiscard]] int get() const { return fd_; }
-  [[nodiscard]] int close() { return ::close(std::exchange(fd_, -1)); }
-
- private:
-  int fd_;
-};
-
-// Removes a temporary file that was not renamed.
+// Removes a temporary file: one that was not renamed, or the old content of a file.
 class TemporaryFile {
  public:
   explicit TemporaryFile(fs::path path) : path_(std::move(path)) {}
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
-  ~TemporaryFile() {
-    if (!path_.empty()) ::unlink(path_.c_str());
-  }
+  ~TemporaryFile() { ::unlink(path_.c_str()); }
 
   [[nodiscard]] const fs::path& path() const { return path_; }
-  void keep() { path_.clear(); }
 
  private:
   fs::path path_;
 };
 
-void write_all(const Descriptor& file, std::string_view bytes, const fs::path& path) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(file.get(), bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) throw Error("cannot write {}: {}", path.string(), reason(errno));
-    bytes.remove_prefix(static_cast<std::size_t>(written));
-  }
-}
-
-void close_checked(Descriptor& file, const fs::path& path) {
-  if (file.close() != 0) throw Error("cannot write {}: {}", path.string(), reason(errno));
-}
-
 void write_directly(const fs::path& path, std::string_view bytes) {
   Descriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
-  if (file.get() < 0) throw Error("cannot write {}: {}", path.string(), reason(errno));
+  if (file.get() < 0) throw Error("cannot write {}: {}", path.string(), error_text(errno));
   write_all(file, bytes, path);
-  close_checked(file, path);
+  close_written(file, false, path);
 }
 
 struct OpenTemporary {
@@ -84,15 +48,17 @@ struct OpenTemporary {
   fs::path path;
 };
 
-// A new file beside `path`. Its name has the process id and the first free number, so that it
-// collides neither with other processes and threads nor with the leftovers of a killed process.
+// A new file beside `path`. Its name has the process id and a number that this process has not used
+// yet: the name stays this file's after the file has moved. Leftovers of a killed process are
+// passed over.
 OpenTemporary open_temporary(const fs::path& path) {
+  static std::atomic<unsigned> next{0};
   for (int attempt = 0; attempt < 1000; ++attempt) {
     fs::path name = path;
-    name += fmt::format(".tmp{}-{}", ::getpid(), attempt);
+    name += fmt::format(".tmp{}-{}", ::getpid(), next++);
     Descriptor file(::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
     if (file.get() >= 0) return {std::move(file), std::move(name)};
-    if (errno != EEXIST) throw Error("cannot write {}: {}", path.string(), reason(errno));
+    if (errno != EEXIST) throw Error("cannot write {}: {}", path.string(), error_text(errno));
   }
   throw Error("cannot write {}: too many temporary files beside it; remove {}.tmp*",
               path.string(),
@@ -119,7 +85,7 @@ bool is_device(const fs::path& target) {
 
 }  // namespace
 
-// The new content of a file in a temporary file, which is removed unless it is renamed.
+// The new content of a file in a temporary file.
 class AtomicFile::Replacement {
  public:
   Replacement(fs::path asked_for, fs::path target)
@@ -129,14 +95,15 @@ class AtomicFile::Replacement {
         temporary_(opened_.path) {}
 
   void write(std::string_view bytes) { write_all(opened_.file, bytes, asked_for_); }
-  void close() { close_checked(opened_.file, asked_for_); }
+  // Where nothing is replaced, a power failure loses nothing that was there.
+  void close() { close_written(opened_.file, path_exists(target_), asked_for_); }
 
   void take_place() {
     if (::rename(temporary_.path().c_str(), target_.c_str()) != 0) {
-      throw Error("cannot write {}: {}", asked_for_.string(), reason(errno));
+      throw Error("cannot write {}: {}", asked_for_.string(), error_text(errno));
     }
-    temporary_.keep();
   }
+  void take_place(FileMoves& moves) { moves.put(temporary_.path(), target_, asked_for_); }
 
  private:
   fs::path asked_for_;
@@ -165,6 +132,10 @@ void AtomicFile::take_place() {
   replacement_->take_place();
 }
 
+void AtomicFile::take_place(FileMoves& moves) {
+  replacement_->take_place(moves);
+}
+
 void write_file_atomically(const fs::path& path, std::string_view bytes) {
   const fs::path target = checked_target(path);
   if (is_device(target)) return write_directly(target, bytes);
@@ -181,15 +152,17 @@ void write_files_atomically(std::span<const FileContent> files) {
     replacement.write(file.bytes);
     replacement.close();
   }
-  for (AtomicFile& replacement : replacements) replacement.take_place();
+  FileMoves moves;  // after the files, so that they take their places back before these go
+  for (AtomicFile& replacement : replacements) replacement.take_place(moves);
+  moves.keep();
 }
 
 std::string read_file(const fs::path& path, std::size_t max_bytes) {
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  if (file.get() < 0) throw Error("cannot read {}: {}", path.string(), reason(errno));
+  if (file.get() < 0) throw Error("cannot read {}: {}", path.string(), error_text(errno));
   struct stat status = {};
   if (::fstat(file.get(), &status) != 0) {
-    throw Error("cannot read {}: {}", path.string(), reason(errno));
+    throw Error("cannot read {}: {}", path.string(), error_text(errno));
   }
   if (S_ISDIR(status.st_mode)) throw Error("cannot read {}: it is a folder", path.string());
   const std::size_t expected = static_cast<std::size_t>(std::max<off_t>(status.st_size, 0));
@@ -202,7 +175,7 @@ std::string read_file(const fs::path& path, std::size_t max_bytes) {
     if (size == content.size()) content.resize(std::max<std::size_t>(2 * size, 65536));
     const ssize_t count = ::read(file.get(), content.data() + size, content.size() - size);
     if (count < 0 && errno == EINTR) continue;
-    if (count < 0) throw Error("cannot read {}: {}", path.string(), reason(errno));
+    if (count < 0) throw Error("cannot read {}: {}", path.string(), error_text(errno));
     if (count == 0) break;
     size += static_cast<std::size_t>(count);
   }

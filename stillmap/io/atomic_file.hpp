@@ -11,10 +11,12 @@
 namespace stillmap {
 
 /// Writes a whole file or leaves it unchanged: the bytes go to a temporary file in the same folder,
-/// which is then renamed. A reader of `path` sees the old content or the new one, never a part. A
-/// link is followed; a device (/dev/stdout) is written directly. Throws Error on any failure (no
-/// such folder, not writable, disk full) and leaves no temporary file.
+/// which is renamed once they are on the disk. A reader of `path` sees the old content or the new
+/// one, never a part. A link is followed; a device (/dev/stdout) is written directly. Throws Error
+/// on any failure (no such folder, not writable, disk full) and leaves no temporary file.
 void write_file_atomically(const std::filesystem::path& path, std::string_view bytes);
+
+class FileMoves;
 
 struct FileContent {
   std::filesystem::path path;
@@ -22,8 +24,8 @@ struct FileContent {
 };
 
 /// Writes several files, all of them or none: all bytes go to temporary files in the folders of the
-/// files, which are renamed, one after the other, once all are complete. Throws Error as
-/// write_file_atomically does, and for a device.
+/// files, which are renamed, one right after the other, once all are complete; if a rename fails,
+/// the earlier ones are taken back. Throws Error as write_file_atomically does, and for a device.
 void write_files_atomically(std::span<const FileContent> files);
 
 /// Writes a file piece by piece, and atomically. Until it takes its place there is only a temporary
@@ -41,6 +43,8 @@ class AtomicFile {
   void close();
   /// After close().
   void take_place();
+  /// The same, together with other moves. The object outlives `moves`.
+  void take_place(FileMoves& moves);
 
  private:
   class Replacement;

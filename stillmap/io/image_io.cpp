@@ -2,6 +2,8 @@
 #include "stillmap/io/image_io.hpp"
 
 #include <cmath>
+#include <system_error>
+#include <utility>
 
 #include <opencv2/imgproc.hpp>
 
@@ -17,22 +19,37 @@ namespace {
 constexpr std::size_t kMaxImageFileBytes = std::size_t{256} << 20U;
 
 std::string read_image_file(const std::filesystem::path& path) {
-  if (!path_exists(path)) throw DamagedImage("{}: no such file, expected an image", path.string());
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) {  // a pipe would make the reader wait
+    throw DamagedImage("{}: no such file, expected an image", path.string());
+  }
   std::string bytes = read_file(path, kMaxImageFileBytes);
   if (bytes.empty()) throw DamagedImage("{}: empty file, expected an image", path.string());
   return bytes;
 }
 
+ColorFile decode_color_file(std::string_view bytes, const std::string& name) {
+  if (is_jpeg(bytes)) {
+    DecodedJpeg jpeg = decode_jpeg(bytes, name);
+    std::string warning = jpeg.warning.empty() ? "" : fmt::format("{}: {}", name, jpeg.warning);
+    return {ColorImage(std::move(jpeg.rgb)), std::move(warning)};
+  }
+  if (is_png(bytes)) return {ColorImage(cv::Mat3b(decode_png(bytes, PngKind::kRgb8, name))), ""};
+  throw DamagedImage("{}: neither PNG nor JPEG, expected a colour image", name);
+}
+
 }  // namespace
 
 ColorImage read_color(const std::filesystem::path& path) {
-  return decode_color(read_image_file(path), path.string());
+  return read_color_file(path).color;
+}
+
+ColorFile read_color_file(const std::filesystem::path& path) {
+  return decode_color_file(read_image_file(path), path.string());
 }
 
 ColorImage decode_color(std::string_view bytes, const std::string& name) {
-  if (is_jpeg(bytes)) return ColorImage(decode_jpeg(bytes, name));
-  if (is_png(bytes)) return ColorImage(cv::Mat3b(decode_png(bytes, PngKind::kRgb8, name)));
-  throw DamagedImage("{}: neither PNG nor JPEG, expected a colour image", name);
+  return decode_color_file(bytes, name).color;
 }
 
 DepthImage read_depth(const std::filesystem::path& path, double depth_factor) {

@@ -27,6 +27,16 @@ class DamagedImage : public Error {
 /// Reads a PNG (8-bit gray or RGB; transparency is dropped) or JPEG as RGB.
 [[nodiscard]] ColorImage read_color(const std::filesystem::path& path);
 
+/// A colour image and what is wrong with its file beside the pixels.
+struct ColorFile {
+  ColorImage color;
+  std::string warning;  ///< one line that begins with the file; empty if nothing is wrong
+};
+
+/// read_color with what is wrong. A JPEG is damaged only where pixels cannot be decoded; one that
+/// lacks its end marker, or has stray bytes before it, is read with a warning.
+[[nodiscard]] ColorFile read_color_file(const std::filesystem::path& path);
+
 /// read_color for the bytes of a file, such as one in an archive. Messages call it `name`.
 [[nodiscard]] ColorImage decode_color(std::string_view bytes, const std::string& name);
 

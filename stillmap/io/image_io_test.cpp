@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <limits>
 #include <random>
 #include <utility>
@@ -14,7 +15,6 @@
 #include <png.h>
 
 #include "stillmap/core/rgbd_frame.hpp"
-#include "stillmap/io/atomic_file.hpp"
 #include "stillmap/io/png_codec.hpp"
 #include "tests/support/files.hpp"
 
@@ -51,7 +51,7 @@ bool same(const cv::Mat& a, const cv::Mat& b) {
 }
 
 fs::path write(const TemporaryFolder& folder, const std::string& name, std::string_view bytes) {
-  write_file_atomically(folder.path() / name, bytes);
+  std::ofstream(folder.path() / name, std::ios::binary) << bytes;
   return folder.path() / name;
 }
 
@@ -146,13 +146,55 @@ TEST(ReadColor, RefusesEveryTruncationOfAPng) {
   }
 }
 
-TEST(ReadColor, RefusesEveryTruncationOfAJpeg) {
+// Only what has all pixels is read: a file without its end marker.
+TEST(ReadColor, RefusesEveryTruncationOfAJpegThatCostsPixels) {
   const TemporaryFolder folder;
   const std::string bytes = as_string(encode_jpeg(random_color(12, 12), 90));
+  const cv::Mat3b whole = read_color(write(folder, "whole.jpg", bytes)).mat;
+  EXPECT_EQ(read_color_file(folder.path() / "whole.jpg").warning, "");
+  int refused = 0;
   for (std::size_t size = 0; size < bytes.size(); ++size) {
     const fs::path path = write(folder, "a.jpg", std::string_view(bytes).substr(0, size));
-    ASSERT_THAT(error_of([&] { (void)read_color(path); }), HasSubstr("a.jpg")) << size;
+    try {
+      const ColorFile read = read_color_file(path);
+      EXPECT_TRUE(same(read.color.mat, whole)) << size;
+      EXPECT_THAT(read.warning, HasSubstr("a.jpg: Premature end of JPEG file")) << size;
+    } catch (const DamagedImage& damage) {
+      EXPECT_THAT(damage.what(), HasSubstr("a.jpg")) << size;
+      ++refused;
+    }
   }
+  EXPECT_GE(refused, static_cast<int>(bytes.size()) - 3);
+  EXPECT_LE(refused, static_cast<int>(bytes.size()) - 2);
+}
+
+// What cameras with motion JPEG send: all pixels are there.
+TEST(ReadColor, ReadsAJpegThatLacksNoPixel) {
+  const TemporaryFolder folder;
+  const std::string bytes = as_string(encode_jpeg(smooth_color(64, 48), 90));
+  const std::string body = bytes.substr(0, bytes.size() - 2), end = bytes.substr(bytes.size() - 2);
+  const cv::Mat3b whole = read_color(write(folder, "whole.jpg", bytes)).mat;
+  const std::string stray = body + "stray" + end, padded = bytes + std::string(512, '\0');
+  for (const std::string& odd : {body, stray, body + std::string(100, '\0') + end, padded}) {
+    const ColorFile read = read_color_file(write(folder, "odd.jpg", odd));
+    EXPECT_TRUE(same(read.color.mat, whole)) << odd.size();
+    EXPECT_EQ(read.warning.empty(), odd == padded) << read.warning;  // nobody reads past the end
+  }
+}
+
+// Bytes changed in the pixels themselves.
+TEST(ReadColor, RefusesAJpegWhosePixelsAreGuessed) {
+  const TemporaryFolder folder;
+  std::string bytes = as_string(encode_jpeg(random_color(64, 48), 90));
+  const std::size_t scan = bytes.find("\xff\xda");
+  ASSERT_NE(scan, std::string::npos);
+  std::string cut = bytes;
+  cut.erase(bytes.size() / 2, 200);  // the scan ends too early, the end marker is there
+  EXPECT_THAT(error_of([&] { (void)read_color(write(folder, "cut.jpg", cut)); }),
+              HasSubstr("broken JPEG"));
+  bytes.replace(scan + 500, 2, "\xff\xd3");  // a restart marker where none is due
+  EXPECT_THAT(error_of([&] { (void)read_color(write(folder, "marker.jpg", bytes)); }),
+              HasSubstr("broken JPEG"));
 }
 
 TEST(ReadColor, RefusesDamage) {

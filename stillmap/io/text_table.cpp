@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "stillmap/core/error.hpp"
 #include "stillmap/io/atomic_file.hpp"
+#include "stillmap/io/stamp_text.hpp"
 
 namespace stillmap {
 namespace {
@@ -80,7 +83,13 @@ double TextTable::number(const TextRow& row, std::size_t column) const {
 }
 
 Stamp TextTable::stamp(const TextRow& row, std::size_t column) const {
-  return {number(row, column), std::string(row.columns.at(column))};
+  const std::string_view text = row.columns.at(column);
+  if (std::optional<Stamp> stamp = parse_stamp(text)) return *std::move(stamp);
+  throw Error("{}: column {} is {}, expected a stamp: a finite number of at most {} characters",
+              place(row),
+              column + 1,
+              quoted(text),
+              kMaxStampLength);
 }
 
 }  // namespace stillmap

@@ -35,7 +35,7 @@ class TextTable {
   /// A finite number. Throws Error for any other text.
   [[nodiscard]] double number(const TextRow& row, std::size_t column) const;
 
-  /// A finite number with its text. Throws Error for any other text.
+  /// The stamp that parse_stamp() reads there. Throws Error for any other text.
   [[nodiscard]] Stamp stamp(const TextRow& row, std::size_t column) const;
 
  private:

@@ -9,6 +9,7 @@
 
 #include "stillmap/core/error.hpp"
 #include "stillmap/geometry/se3.hpp"
+#include "stillmap/io/stamp_text.hpp"
 #include "stillmap/io/text_table.hpp"
 
 namespace stillmap {
@@ -43,11 +44,6 @@ void sort_by_stamp(Trajectory& poses) {
     unique.push_back(std::move(pose));
   }
   poses = std::move(unique);
-}
-
-// A stamp that no file gave has no text.
-std::string stamp_text(const Stamp& stamp) {
-  return stamp.text.empty() ? fmt::format("{:.6f}", stamp.seconds) : stamp.text;
 }
 
 }  // namespace

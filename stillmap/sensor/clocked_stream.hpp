@@ -12,7 +12,9 @@
 namespace stillmap {
 
 /// Plays another stream as a camera would: each frame arrives at its time, and only the newest
-/// waits. A frame that is not fetched before the next one arrives is dropped.
+/// waits. A frame that is not fetched before the next one arrives is dropped. A pause of more than
+/// a minute between two frames, as where recordings were joined or stamps are not in seconds, takes
+/// one second.
 class ClockedStream : public FrameStream {
  public:
   /// Time passes `speed` times as fast as the stamps say; it begins with the first call of next().
@@ -30,6 +32,9 @@ class ClockedStream : public FrameStream {
   /// The arrival of the frame that next() returned last, in seconds of the clock.
   [[nodiscard]] double arrival_s() const { return arrival_s_; }
 
+  /// What was left out of pauses, seconds of the stamps.
+  [[nodiscard]] double skipped_s() const { return skipped_s_; }
+
   /// The number of frames that were not fetched in time.
   [[nodiscard]] std::size_t dropped() const { return dropped_; }
 
@@ -38,6 +43,7 @@ class ClockedStream : public FrameStream {
   void take(std::optional<StreamedFrame>& frame);
 
   static constexpr std::size_t kAhead = 4;
+  static constexpr double kMaxPause_s = 60, kShortPause_s = 1;
   FrameStream& stream_;
   double speed_;
   Clock& clock_;
@@ -47,7 +53,9 @@ class ClockedStream : public FrameStream {
   double coming_arrival_s_ = 0;
   double arrival_s_ = 0;
   std::optional<double> begin_s_;  // of the clock
-  double first_stamp_s_ = 0;
+  double first_stamp_s_ = 0;       // moved by what was left out of pauses
+  double last_stamp_s_ = 0;
+  double skipped_s_ = 0;
   std::size_t dropped_ = 0;
 };
 

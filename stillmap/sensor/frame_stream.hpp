@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "stillmap/core/ids.hpp"
 #include "stillmap/core/rgbd_frame.hpp"
@@ -60,6 +61,10 @@ class FrameStream {
   /// thread at a time. Throws Error for an image of the wrong kind or size, and for a sensor that
   /// has failed: after that there is no next frame.
   [[nodiscard]] virtual std::optional<StreamedFrame> next() = 0;
+
+  /// What was wrong with the frames so far although every pixel could be read, in one line for each
+  /// kind. Not to be called during next().
+  [[nodiscard]] virtual std::vector<std::string> warnings() const { return {}; }
 };
 
 }  // namespace stillmap

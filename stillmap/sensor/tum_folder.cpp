@@ -32,10 +32,16 @@ std::optional<StreamedFrame> TumFolder::next() {
   const FrameId id(static_cast<std::uint32_t>(next_));
   next_ += selection_.stride;
   try {
-    return sequence_.read(id);
+    FrameReading reading = sequence_.read_with_warning(id);
+    image_warnings_.add(reading.warning);
+    return std::move(reading.frame);
   } catch (const DamagedImage& damage) {
     return DamagedFrame{id, sequence_.entry(id).stamp, damage.what()};
   }
+}
+
+std::vector<std::string> TumFolder::warnings() const {
+  return image_warnings_.lines();
 }
 
 }  // namespace stillmap

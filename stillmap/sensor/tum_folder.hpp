@@ -3,6 +3,7 @@
 
 #include "stillmap/sensor/frame_selection.hpp"
 #include "stillmap/sensor/frame_stream.hpp"
+#include "stillmap/sensor/image_warnings.hpp"
 #include "stillmap/sensor/tum_sequence.hpp"
 
 namespace stillmap {
@@ -18,12 +19,14 @@ class TumFolder : public FrameStream {
   [[nodiscard]] const CameraModel& camera() const override { return sequence_.camera(); }
   [[nodiscard]] std::optional<std::size_t> size() const override;
   [[nodiscard]] std::optional<StreamedFrame> next() override;
+  [[nodiscard]] std::vector<std::string> warnings() const override;
 
  private:
   TumSequence sequence_;
   FrameSelection selection_;
   std::size_t end_;
   std::size_t next_;
+  ImageWarnings image_warnings_;
 };
 
 }  // namespace stillmap

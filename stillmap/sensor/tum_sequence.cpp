@@ -2,7 +2,6 @@
 #include "stillmap/sensor/tum_sequence.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <system_error>
 #include <utility>
 
@@ -28,11 +27,11 @@ std::string folder_name(const fs::path& folder) {
 std::vector<std::string> words_of(const std::string& name) {
   std::vector<std::string> words(1);
   for (const char c : name) {
-    const unsigned char u = static_cast<unsigned char>(c);
-    if (std::isalnum(u) == 0) {
-      words.emplace_back();
+    const bool capital = c >= 'A' && c <= 'Z';
+    if (capital || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) {
+      words.back() += static_cast<char>(capital ? c - 'A' + 'a' : c);
     } else {
-      words.back() += static_cast<char>(std::tolower(u));
+      words.emplace_back();
     }
   }
   return words;
@@ -100,17 +99,22 @@ const SequenceEntry& TumSequence::entry(FrameId id) const {
 }
 
 FramePtr TumSequence::read(FrameId id) const {
+  return read_with_warning(id).frame;
+}
+
+FrameReading TumSequence::read_with_warning(FrameId id) const {
   const SequenceEntry& files = entry(id);
   RgbdFrame frame;
   frame.id = id;
   frame.stamp = files.stamp;
   frame.depth_stamp_s = files.depth_stamp_s;
-  frame.color = read_color(files.color_file);
+  ColorFile color = read_color_file(files.color_file);
+  frame.color = std::move(color.color);
   check_size(frame.color.mat, camera_, files.color_file);
   frame.depth = read_depth(files.depth_file, camera_.depth_factor);
   check_size(frame.depth.mat, camera_, files.depth_file);
   frame.gray = to_gray(frame.color);
-  return std::make_shared<const RgbdFrame>(std::move(frame));
+  return {std::make_shared<const RgbdFrame>(std::move(frame)), std::move(color.warning)};
 }
 
 std::optional<fs::path> TumSequence::groundtruth_file() const {

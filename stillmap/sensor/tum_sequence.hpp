@@ -24,6 +24,11 @@ struct SequenceOptions {
   std::optional<CameraModel> camera;  ///< instead of the one that the sequence tells
 };
 
+struct FrameReading {
+  FramePtr frame;       ///< not null
+  std::string warning;  ///< see ColorFile; empty if nothing is wrong
+};
+
 /// A colour image and the depth image paired with it.
 struct SequenceEntry {
   Stamp stamp;  ///< of the colour image, with the text of rgb.txt
@@ -59,6 +64,8 @@ class TumSequence {
   /// Decodes the images of a pair. May run in any number of threads. Throws Error, naming the file,
   /// when an image is missing, broken, of the wrong kind or not of the camera's size.
   [[nodiscard]] FramePtr read(FrameId id) const;
+  /// The same, with what is wrong with the files beside the pixels.
+  [[nodiscard]] FrameReading read_with_warning(FrameId id) const;
 
   /// groundtruth.txt, where the folder has it.
   [[nodiscard]] std::optional<std::filesystem::path> groundtruth_file() const;

@@ -148,12 +148,16 @@ Session read(SectionReader in, const SessionReadOptions& options) {
 
 void write_session(const std::filesystem::path& path, const Session& session) {
   AtomicFile file(path);
-  write_parts(
-      parts_of(session),
-      [&](std::string_view bytes) { file.write(bytes); },
-      "cannot write " + path.string());
+  write_session(
+      [&](std::string_view bytes) { file.write(bytes); }, session, "cannot write " + path.string());
   file.close();
   file.take_place();
+}
+
+void write_session(const std::function<void(std::string_view)>& sink,
+                   const Session& session,
+                   const std::string& place) {
+  write_parts(parts_of(session), sink, place);
 }
 
 Session read_session(const std::filesystem::path& path, const SessionReadOptions& options) {

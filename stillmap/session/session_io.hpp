@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -16,6 +17,10 @@ namespace stillmap {
 /// Writes a session atomically. Takes little memory in addition to the session. Throws Error when
 /// the file cannot be written, and for a session that read_session would refuse.
 void write_session(const std::filesystem::path& path, const Session& session);
+/// The same, piece by piece to `sink`. `place` begins the messages about the session.
+void write_session(const std::function<void(std::string_view bytes)>& sink,
+                   const Session& session,
+                   const std::string& place);
 
 struct SessionReadOptions {
   /// If false, Session::views stays empty and most of the file is not read. Localising needs no

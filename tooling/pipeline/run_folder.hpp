@@ -3,16 +3,19 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 
+#include "stillmap/io/folder_replacement.hpp"
+#include "stillmap/session/session.hpp"
 #include "stillmap/system/system.hpp"
 #include "tooling/report/run_report.hpp"
 
 namespace stillmap {
 
-/// Creates the folder if it is missing and checks that files can be written there, before a long
-/// run. Throws Error naming the folder.
-void prepare_run_folder(const std::filesystem::path& folder);
+/// The names of all files that a run may leave in its folder.
+[[nodiscard]] std::span<const std::string_view> run_file_names();
 
 /// Logs with a line per frame, if the run has them.
 struct FrameLines {
@@ -20,14 +23,26 @@ struct FrameLines {
   std::optional<std::string> live_jsonl;
 };
 
-/// Writes trajectory.txt, keyframes.txt, config.yaml, camera.yaml, objects.jsonl, live.jsonl,
-/// map.ply, report.json and report.html, each whole or not at all, the trajectory first. The file
-/// of a log that this run does not have is removed, if an earlier run left it. camera.yaml is the
-/// camera as used, with the estimated readout time. Throws Error naming the file that could not be
-/// written.
-void write_run_folder(const std::filesystem::path& folder,
-                      const RunResult& result,
-                      const RunReport& report,
-                      const FrameLines& lines);
+/// The folder with the results of a run. They replace those of an earlier run as a whole.
+class RunFolder {
+ public:
+  /// Creates the folder if it is missing and checks that files can be written there, before a long
+  /// run. Nobody else can write results there until the destructor. Throws Error naming the folder.
+  explicit RunFolder(const std::filesystem::path& folder);
+
+  /// Writes trajectory.txt, keyframes.txt, config.yaml, camera.yaml, map.ply, report.json,
+  /// report.html and, where the run has them, objects.jsonl, live.jsonl and map.stillmap: all of
+  /// them or none. A file of an earlier run that this one does not have goes; files of others stay.
+  /// camera.yaml is the camera as used, with the estimated readout time. Throws Error naming the
+  /// file that could not be written. To be called once.
+  void write(const RunResult& result,
+             const RunReport& report,
+             const FrameLines& lines,
+             const Session* session);
+
+ private:
+  std::filesystem::path folder_;
+  FolderReplacement files_;
+};
 
 }  // namespace stillmap

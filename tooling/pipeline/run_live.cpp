@@ -7,6 +7,8 @@
 #include <utility>
 #include <variant>
 
+#include <fmt/core.h>
+
 #include "stillmap/concurrency/prefetcher.hpp"
 #include "stillmap/core/error.hpp"
 #include "stillmap/core/stopwatch.hpp"
@@ -116,6 +118,12 @@ void run_by_clock(const LiveInput& input, LiveLoop& loop, RunLog& log, LiveRepor
     }
     const double waited_ms = 1000 * (live.clock->now_s() - camera.arrival_s());
     report.latency_ms.push_back(waited_ms + loop.process(std::get<FramePtr>(*next)));
+  }
+  if (camera.skipped_s() > 0) {
+    log.observers().on_warning(
+        fmt::format("of pauses of more than a minute between frames, {:.0f} s in all were not "
+                    "waited for",
+                    camera.skipped_s()));
   }
 }
 

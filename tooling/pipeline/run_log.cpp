@@ -61,12 +61,15 @@ RunLog::RunLog(const FrameStream& stream,
       samples_(stream.size()),
       watch_(config.dynamics.objects.categories,
              [this](const std::string& warning) { all_.on_warning(warning); }),
+      frame_watch_(config.measurement.max_depth_m,
+                   [this](const std::string& warning) { all_.on_warning(warning); }),
       with_objects_(options.segmenter != nullptr && dynamics_mode(config.dynamics.mode).judges),
       all_(both({&timing_,
                  &frames_,
                  &samples_,
                  with_objects_ ? &objects_ : nullptr,
-                 with_objects_ ? &watch_ : nullptr},
+                 with_objects_ ? &watch_ : nullptr,
+                 &frame_watch_},
                 observers)) {}
 
 void RunLog::skip(const DamagedFrame& damaged) {
@@ -91,6 +94,7 @@ SequenceRun RunLog::finish(System& system) {
   run.result = system.finish();
   all_.on_stage_time("finishing", finishing.lap_ms());
   const RunResult& result = run.result;
+  for (const std::string& warning : stream_.warnings()) all_.on_warning(warning);
   if (result.frames_elsewhere > 0) {
     all_.on_warning(fmt::format(
         "{} frames were tracked after a loss in a map of their own, which no known place "

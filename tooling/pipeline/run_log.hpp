@@ -9,6 +9,7 @@
 #include "stillmap/session/system_config.hpp"
 #include "stillmap/system/system.hpp"
 #include "tooling/pipeline/frame_log.hpp"
+#include "tooling/pipeline/frame_watch.hpp"
 #include "tooling/pipeline/object_log.hpp"
 #include "tooling/pipeline/object_watch.hpp"
 #include "tooling/pipeline/run_observer.hpp"
@@ -47,6 +48,7 @@ class RunLog {
   SampleLog samples_;
   ObjectLog objects_;
   ObjectWatch watch_;
+  FrameWatch frame_watch_;
   bool with_objects_;
   ObserverList all_;
 };

@@ -5,6 +5,7 @@
 
 #include <fmt/core.h>
 
+#include "stillmap/sensor/stamp_interval.hpp"
 #include "tooling/report/display_text.hpp"
 #include "tooling/report/page_sections.hpp"
 #include "tooling/report/page_text.hpp"
@@ -124,7 +125,9 @@ std::string facts_html(const RunReport& report) {
     }
     const double seconds =
         report.estimate.back().stamp.seconds - report.estimate.front().stamp.seconds;
-    text += fmt::format(" \u00B7 {} of path in {:.1f} s", length_text(metres), seconds);
+    text += fmt::format(" \u00B7 {} of path", length_text(metres));
+    const auto intervals = static_cast<double>(report.estimate.size() - 1);
+    if (!is_absurd_interval(seconds / intervals)) text += fmt::format(" in {:.1f} s", seconds);
   }
   return html_escape(text);
 }

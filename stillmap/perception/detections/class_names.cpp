@@ -78,9 +78,30 @@ std::string folded(std::string_view name) {
   std::string letters;
   for (const char c : name) {
     if (c >= 'A' && c <= 'Z') letters += static_cast<char>(c - 'A' + 'a');
-    if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) letters += c;
+    const bool other_script = static_cast<unsigned char>(c) >= 0x80;
+    if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || other_script) letters += c;
   }
   return letters;
+}
+
+// The bytes of the printable character that a text of UTF-8 begins with; 0 if there is none.
+std::size_t character_size(std::string_view text) {
+  const auto byte = [&](std::size_t i) {
+    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
+  };
+  const unsigned first = byte(0);
+  if (first < 0x80) return first >= 0x20 && first != 0x7F ? 1 : 0;
+  const std::size_t size = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
+  constexpr std::array<unsigned, 5> kLeast = {0, 0, 0xA0, 0x800, 0x10000};  // A0: after controls
+  unsigned code = first & (0x7FU >> size);
+  for (std::size_t i = 1; i < size; ++i) {
+    if ((byte(i) & 0xC0U) != 0x80) return 0;
+    code = code << 6U | (byte(i) & 0x3FU);
+  }
+  const bool is_surrogate = code >= 0xD800 && code <= 0xDFFF;
+  const bool valid = first >= 0xC2 && first <= 0xF4 && code >= kLeast.at(size) &&
+                     code <= 0x10FFFF && !is_surrogate;
+  return valid ? size : 0;
 }
 
 using NameTable = std::map<std::string, std::string_view, std::less<>>;
@@ -107,6 +128,28 @@ std::span<const std::string_view> coco_class_names() {
 
 bool is_coco_class(std::string_view name) {
   return std::ranges::find(kCoco, name) != kCoco.end();
+}
+
+bool is_class_name(std::string_view text) {
+  if (text.empty() || text.size() > kMaxClassNameBytes) return false;
+  while (!text.empty()) {
+    const std::size_t size = character_size(text);
+    if (size == 0) return false;
+    text.remove_prefix(size);
+  }
+  return true;
+}
+
+std::string usable_class_name(std::string_view text) {
+  std::string name;
+  while (!text.empty()) {
+    const std::size_t size = character_size(text);
+    const std::string_view character = size > 0 ? text.substr(0, size) : "?";
+    if (name.size() + character.size() > kMaxClassNameBytes) break;
+    name += character;
+    text.remove_prefix(std::max<std::size_t>(size, 1));
+  }
+  return name.empty() ? "?" : name;
 }
 
 std::string coco_name(std::string_view name) {

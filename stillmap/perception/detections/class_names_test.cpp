@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 namespace stillmap {
@@ -78,6 +79,32 @@ TEST(ClassNames, SameButForCaseAndSigns) {
   EXPECT_TRUE(is_same_name("Pallet Jack", "pallet_jack"));
   EXPECT_FALSE(is_same_name("pallet", "pallets"));
   EXPECT_FALSE(is_same_name("--", "++"));
+  EXPECT_FALSE(is_same_name("\u4EBA 1", "\u8F66 1"));
+}
+
+TEST(ClassNames, AreTextsOfAnyLanguage) {
+  for (const char* name : {"a", "Fu\u00DFg\u00E4nger", "\u4EBA", "\U0001F408", "a b", "\"'"}) {
+    EXPECT_TRUE(is_class_name(name)) << name;
+    EXPECT_EQ(usable_class_name(name), name);
+  }
+  // A cut character, an overlong one, a surrogate, one beyond Unicode, control characters.
+  for (const char* name : {"",
+                           "\xC3",
+                           "\xC0\xAF",
+                           "\xED\xA0\x80",
+                           "\xF4\x90\x80\x80",
+                           "\xFF",
+                           "a\n",
+                           "\x7F",
+                           "\u0085"}) {
+    EXPECT_FALSE(is_class_name(name)) << name;
+    EXPECT_TRUE(is_class_name(usable_class_name(name))) << name;
+  }
+  EXPECT_EQ(usable_class_name("p\xFF\u00E9\n"), "p?\u00E9?");
+  EXPECT_TRUE(is_class_name(std::string(256, 'a')));
+  EXPECT_FALSE(is_class_name(std::string(257, 'a')));
+  const std::string most(255, 'a');
+  EXPECT_EQ(usable_class_name(fmt::format("{}\u00E9", most)), most);
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <system_error>
 #include <utility>
 
 #include <opencv2/core.hpp>
@@ -13,6 +12,7 @@
 #include "stillmap/core/error.hpp"
 #include "stillmap/io/atomic_file.hpp"
 #include "stillmap/io/image_io.hpp"
+#include "stillmap/io/stamp_text.hpp"
 
 namespace stillmap {
 namespace {
@@ -21,24 +21,26 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMaxListBytes = std::size_t{256} << 20U;
 constexpr std::size_t kMaxLines = 1000000;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 fs::path list_path(const fs::path& folder) {
   return folder / "detections.jsonl";
 }
 
-// A stamp is a plain number, so the file cannot be outside this folder.
+// A stamp is a number, so the file cannot be outside this folder.
 fs::path mask_path(const fs::path& folder, const Stamp& stamp) {
   return folder / "masks" / (stamp.text + ".png");
 }
 
-std::string line_place(const fs::path& folder, std::size_t number) {
-  return fmt::format("{}:{}", list_path(folder).string(), number);
+// Masks of other names are those of other programs.
+bool is_file_of_detections(const fs::path& name) {
+  const bool is_mask = name.parent_path() == "masks" && name.extension() == ".png" &&
+                       parse_stamp(name.stem().string()).has_value();
+  return is_mask || name == "detections.jsonl";
 }
 
-void remove_file(const fs::path& path) {
-  std::error_code failure;
-  fs::remove(path, failure);
-  if (failure) throw Error("cannot remove {}: {}", path.string(), failure.message());
+std::string line_place(const fs::path& folder, std::size_t number) {
+  return fmt::format("{}:{}", list_path(folder).string(), number);
 }
 
 void check_order(const Stamp& stamp, double previous_s, const std::string& place) {
@@ -131,17 +133,19 @@ bool is_share(const DetectedObject& object) {
 
 }  // namespace
 
-DetectionsWriter::DetectionsWriter(fs::path folder, cv::Size image)
-    : folder_(std::move(folder)), image_(image) {
+DetectionsWriter::DetectionsWriter(const fs::path& folder, cv::Size image)
+    : own_(std::make_unique<FolderReplacement>(folder, is_file_of_detections)),
+      result_(*own_),
+      folder_(folder),
+      image_(image) {
   STILLMAP_CHECK(image.width > 0 && image.height > 0);
-  std::error_code failure;
-  fs::create_directories(folder_ / "masks", failure);
-  if (failure) {
-    throw Error("{}: the folder cannot be made ({}); name one in a place that can be written to",
-                (folder_ / "masks").string(),
-                failure.message());
-  }
-  remove_file(list_path(folder_));
+}
+
+DetectionsWriter::DetectionsWriter(const FolderReplacement& result,
+                                   const fs::path& name,
+                                   cv::Size image)
+    : result_(result), folder_(name), name_(name), image_(image) {
+  STILLMAP_CHECK(image.width > 0 && image.height > 0);
 }
 
 void DetectionsWriter::add(const FrameDetections& frame) {
@@ -150,19 +154,17 @@ void DetectionsWriter::add(const FrameDetections& frame) {
   const DetectionsLine line = parse_detections_line(text, image_, place);
   check_order(line.stamp, last_stamp_s_, place);
   last_stamp_s_ = line.stamp.seconds;
-  const fs::path path = mask_path(folder_, line.stamp);
-  if (frame.mask.mat.empty()) {
-    remove_file(path);  // from an earlier run
-  } else {
-    check_mask(frame.mask.mat, line, image_, path, place);
-    write_file_atomically(path, encode_mask_png(frame.mask.mat));
+  if (!frame.mask.mat.empty()) {
+    check_mask(frame.mask.mat, line, image_, mask_path(folder_, line.stamp), place);
+    result_.write(mask_path(name_, line.stamp), encode_mask_png(frame.mask.mat));
   }
   list_ += text;
   list_ += '\n';
 }
 
 void DetectionsWriter::finish() {
-  write_file_atomically(list_path(folder_), list_);
+  result_.write(list_path(name_), list_);
+  if (own_) own_->take_place();
 }
 
 DetectionsFolder DetectionsFolder::open(const fs::path& folder, cv::Size image) {
@@ -209,7 +211,7 @@ void DetectionsFolder::add_line(std::string_view text, std::size_t number) {
   const std::string place = line_place(folder_, number);
   if (number > kMaxLines) throw Error("{}: more than {} lines", place, kMaxLines);
   DetectionsLine line = parse_detections_line(text, image_, place);
-  check_order(line.stamp, lines_.empty() ? -1.0 : lines_.back().line.stamp.seconds, place);
+  check_order(line.stamp, lines_.empty() ? -kInfinity : lines_.back().line.stamp.seconds, place);
   lines_.push_back({std::move(line), number});
 }
 

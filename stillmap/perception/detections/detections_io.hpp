@@ -3,6 +3,8 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <limits>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,33 +12,42 @@
 #include <opencv2/core/types.hpp>
 
 #include "stillmap/core/trajectory.hpp"
+#include "stillmap/io/folder_replacement.hpp"
 #include "stillmap/perception/detections/detections.hpp"
 #include "stillmap/perception/detections/detections_line.hpp"
 
 namespace stillmap {
 
 /// Writes a folder of detections: `detections.jsonl` with a line per frame, and
-/// `masks/<stamp>.png`. The list is written last, so that a folder with a list is complete.
+/// `masks/<stamp>.png`. They replace earlier ones all at once, at the end (FolderReplacement).
 class DetectionsWriter {
  public:
-  /// Creates the folder if necessary and removes an earlier list. `image` is the size of the
-  /// sequence's images. Throws Error when the folder cannot be created.
-  DetectionsWriter(std::filesystem::path folder, cv::Size image);
+  /// Creates the folder if necessary. `image` is the size of the sequence's images. Throws Error
+  /// when the folder cannot be created.
+  DetectionsWriter(const std::filesystem::path& folder, cv::Size image);
+  /// The same in a folder of that name in `result`, which outlives the object and takes its place
+  /// later.
+  DetectionsWriter(const FolderReplacement& result,
+                   const std::filesystem::path& name,
+                   cv::Size image);
 
   /// Writes the mask of a frame and keeps its line. Frames must be in the order of their stamps.
   /// Throws Error when the mask cannot be written, and for detections that DetectionsFolder would
   /// refuse.
   void add(const FrameDetections& frame);
 
-  /// Writes the list. No frame can be added afterwards.
+  /// Writes the list; all takes its place. No frame can be added afterwards.
   void finish();
 
  private:
-  std::filesystem::path folder_;
+  std::unique_ptr<FolderReplacement> own_;
+  const FolderReplacement& result_;
+  std::filesystem::path folder_;  // for messages
+  std::filesystem::path name_;    // of the folder in the result
   cv::Size image_;
   std::string list_;
   std::size_t frames_ = 0;
-  double last_stamp_s_ = -1.0;
+  double last_stamp_s_ = -std::numeric_limits<double>::infinity();
 };
 
 /// A folder of detections, written by DetectionsWriter or any other program. Safe to use from

@@ -14,6 +14,7 @@
 
 #include "stillmap/io/atomic_file.hpp"
 #include "stillmap/io/image_io.hpp"
+#include "stillmap/io/stamp_text.hpp"
 #include "stillmap/perception/detections/class_names.hpp"
 #include "stillmap/sensor/tum_sequence.hpp"
 #include "tests/support/files.hpp"
@@ -234,17 +235,45 @@ TEST(DetectionsFolder, AMaskWithoutPixelsIsNone) {
   EXPECT_TRUE(read.at(frame.stamp).mask.mat.empty());
 }
 
-TEST(DetectionsWriter, LeavesNoListUntilItIsFinished) {
+TEST(DetectionsWriter, LeavesTheOldUntilItIsFinished) {
   const TemporaryFolder folder;
-  write_folder(folder.path(), {two_objects("1.5")});
-  DetectionsWriter writer(folder.path(), kImage);
-  EXPECT_FALSE(fs::exists(folder.path() / "detections.jsonl"));
+  write_folder(folder.path(), {two_objects("1.5"), two_objects("1.6")});
+  write_file_atomically(folder.path() / "masks" / "person7.png", "of another program");
   FrameDetections nothing;
   nothing.stamp = stamp_of("1.5");
+  {
+    DetectionsWriter given_up(folder.path(), kImage);
+    given_up.add(nothing);
+  }
+  EXPECT_EQ(DetectionsFolder::open(folder.path(), kImage).size(), 2U);
+  DetectionsWriter writer(folder.path(), kImage);
   writer.add(nothing);
-  EXPECT_FALSE(fs::exists(folder.path() / "masks" / "1.5.png")) << "the mask of an earlier time";
+  EXPECT_FALSE(DetectionsFolder::open(folder.path(), kImage).at(nothing.stamp).mask.mat.empty());
   writer.finish();
   EXPECT_EQ(DetectionsFolder::open(folder.path(), kImage).size(), 1U);
+  EXPECT_TRUE(DetectionsFolder::open(folder.path(), kImage).at(nothing.stamp).mask.mat.empty());
+  EXPECT_FALSE(fs::exists(folder.path() / "masks" / "1.6.png")) << "the mask of an earlier time";
+  EXPECT_TRUE(fs::exists(folder.path() / "masks" / "person7.png"));
+}
+
+// Whatever stamps and classes a run takes, a folder of detections has.
+TEST(DetectionsWriter, TakesEveryStampAndClass) {
+  const TemporaryFolder folder;
+  std::vector<FrameDetections> frames;
+  for (const char* stamp : {"-2.5", "-1.", "0", "1.5e0", "2e9", "3000000000.25"}) {
+    frames.push_back(two_objects(stamp));
+    frames.back().stamp = parse_stamp(stamp).value();
+    frames.back().objects[0].class_name = "Fu\u00DFg\u00E4nger";
+    frames.back().objects[1].class_name = "\u4EBA";
+  }
+  write_folder(folder.path(), frames);
+  const DetectionsFolder read = DetectionsFolder::open(folder.path(), kImage);
+  for (const FrameDetections& frame : frames) {
+    const FrameDetections again = read.at(frame.stamp);
+    EXPECT_EQ(again.stamp.text, frame.stamp.text);
+    EXPECT_EQ(again.objects, frame.objects);
+    EXPECT_EQ(cv::countNonZero(again.mask.mat != frame.mask.mat), 0);
+  }
 }
 
 TEST(DetectionsWriter, RefusesWhatCouldNotBeReadBack) {
@@ -255,7 +284,7 @@ TEST(DetectionsWriter, RefusesWhatCouldNotBeReadBack) {
   };
   FrameDetections path = two_objects("1.5");
   path.stamp.text = "../1.5";
-  EXPECT_THAT(error(path), HasSubstr("plain number"));
+  EXPECT_THAT(error(path), HasSubstr("no finite number"));
   FrameDetections stranger = two_objects("1.5");
   stranger.objects.pop_back();
   EXPECT_THAT(error(stranger), HasSubstr("id 9"));

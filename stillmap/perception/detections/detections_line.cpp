@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stillmap/perception/detections/detections_line.hpp"
 
-#include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
+#include <optional>
 #include <set>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
 #include "stillmap/core/error.hpp"
+#include "stillmap/io/stamp_text.hpp"
 #include "stillmap/perception/detections/class_names.hpp"
 
 namespace stillmap {
@@ -19,12 +19,6 @@ using Json = nlohmann::json;
 
 // 255 objects take less than 40 KiB. The limit keeps hostile files from exhausting memory.
 constexpr std::size_t kMaxLineBytes = std::size_t{1} << 20U;
-constexpr std::size_t kMaxStampLength = 32;
-constexpr std::size_t kMaxClassLength = 64;
-
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
 
 // Quotes any text as one line of ASCII.
 std::string quoted(const std::string& text) {
@@ -37,21 +31,18 @@ const Json& member(const Json& object, const char* key, const std::string& place
   return *found;
 }
 
-Stamp parse_stamp(const Json& value, const std::string& place) {
+Stamp stamp_of(const Json& value, const std::string& place) {
   if (!value.is_string()) {
     throw Error("{}: stamp is not a text, expected one such as \"1341846313.592026\"", place);
   }
-  Stamp stamp;
-  stamp.text = value.get<std::string>();
-  if (!is_plain_number(stamp.text)) {
-    throw Error("{}: stamp {} is no plain number, expected one such as \"1341846313.592026\"",
-                place,
-                quoted(stamp.text.substr(0, 2 * kMaxStampLength)));
-  }
-  const char* end = stamp.text.data() + stamp.text.size();
-  const auto [parsed, status] = std::from_chars(stamp.text.data(), end, stamp.seconds);
-  STILLMAP_CHECK(status == std::errc() && parsed == end);
-  return stamp;
+  const std::string text = value.get<std::string>();
+  if (std::optional<Stamp> stamp = parse_stamp(text)) return *std::move(stamp);
+  throw Error(
+      "{}: stamp {} is no finite number of at most {} characters, expected one such as "
+      "\"1341846313.592026\"",
+      place,
+      quoted(text.substr(0, kMaxStampLength)),
+      kMaxStampLength);
 }
 
 int parse_id(const Json& value, const std::string& place) {
@@ -63,13 +54,13 @@ int parse_id(const Json& value, const std::string& place) {
 }
 
 std::string parse_class(const Json& value, const std::string& place) {
-  const bool text = value.is_string();
-  const std::string name = text ? value.get<std::string>() : std::string();
-  const bool printable = std::ranges::all_of(name, [](char c) { return c >= ' ' && c <= '~'; });
-  if (name.empty() || name.size() > kMaxClassLength || !printable) {
-    throw Error("{}: class is not a text of 1 to {} printable characters, such as \"person\"",
-                place,
-                kMaxClassLength);
+  const std::string name = value.is_string() ? value.get<std::string>() : std::string();
+  if (!is_class_name(name)) {
+    throw Error(
+        "{}: class is not a text of 1 to {} bytes without control characters, such as "
+        "\"person\"",
+        place,
+        kMaxClassNameBytes);
   }
   return coco_name(name);
 }
@@ -138,16 +129,6 @@ std::string format_object(const DetectedObject& object) {
 
 }  // namespace
 
-bool is_plain_number(std::string_view text) {
-  if (text.size() > kMaxStampLength) return false;
-  const std::size_t point = std::min(text.find('.'), text.size());
-  const std::string_view whole = text.substr(0, point);
-  if (whole.empty() || !std::ranges::all_of(whole, is_digit)) return false;
-  if (point == text.size()) return true;
-  const std::string_view fraction = text.substr(point + 1);
-  return !fraction.empty() && std::ranges::all_of(fraction, is_digit);
-}
-
 DetectionsLine parse_detections_line(std::string_view text,
                                      cv::Size image,
                                      const std::string& place) {
@@ -159,7 +140,7 @@ DetectionsLine parse_detections_line(std::string_view text,
     throw Error(R"({}: no JSON object, expected {{"stamp":"...","objects":[...]}})", place);
   }
   DetectionsLine line;
-  line.stamp = parse_stamp(member(root, "stamp", place), place);
+  line.stamp = stamp_of(member(root, "stamp", place), place);
   const Json& objects = member(root, "objects", place);
   if (!objects.is_array()) throw Error("{}: 'objects' is no list", place);
   std::set<int> ids;
@@ -177,7 +158,7 @@ std::string format_detections_line(const FrameDetections& frame) {
     if (!objects.empty()) objects += ',';
     objects += format_object(object);
   }
-  return fmt::format(R"({{"stamp":{},"objects":[{}]}})", quoted(frame.stamp.text), objects);
+  return fmt::format(R"({{"stamp":{},"objects":[{}]}})", quoted(stamp_text(frame.stamp)), objects);
 }
 
 }  // namespace stillmap

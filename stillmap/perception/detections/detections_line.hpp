@@ -20,19 +20,15 @@ struct DetectionsLine {
 
 /// Reads a line. Unknown keys are skipped; class names of VOC become those of COCO. Messages begin
 /// with `place` ("file:line"). Throws Error for text that is no JSON or longer than 1 MiB, a stamp
-/// that is not a plain number (digits, optionally a point and digits), an id outside 1 to 255 or
-/// repeated, a class that is not 1 to 64 printable characters, a score outside [0, 1], and a box
-/// that is empty, reversed, not finite, or farther outside the image than the image is large.
+/// that parse_stamp() refuses, an id outside 1 to 255 or repeated, a class that is_class_name()
+/// refuses, a score outside [0, 1], and a box that is empty, reversed, not finite, or farther
+/// outside the image than the image is large.
 [[nodiscard]] DetectionsLine parse_detections_line(std::string_view text,
                                                    cv::Size image,
                                                    const std::string& place);
 
 /// The line of a frame, without its line end. Numbers read back to the same bits. Nothing is
-/// checked.
+/// checked; whatever parse_detections_line() reads is read again as it was.
 [[nodiscard]] std::string format_detections_line(const FrameDetections& frame);
-
-/// Whether a text is a valid stamp, and hence a safe file name: digits, optionally followed by a
-/// point and digits, at most 32 characters.
-[[nodiscard]] bool is_plain_number(std::string_view text);
 
 }  // namespace stillmap

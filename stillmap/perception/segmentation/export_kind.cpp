@@ -149,7 +149,7 @@ std::vector<std::string> quoted_words(std::string_view text) {
     if (quote != '\'' && quote != '"') continue;
     const std::size_t end = text.find(quote, i + 1);
     if (end == std::string_view::npos) break;
-    words.emplace_back(text.substr(i + 1, end - i - 1));
+    words.push_back(usable_class_name(text.substr(i + 1, end - i - 1)));
     i = end;
   }
   return words;

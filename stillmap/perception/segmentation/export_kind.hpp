@@ -48,7 +48,8 @@ struct NetworkExport {
                                             const std::vector<Tensor>& outputs,
                                             cv::Size input);
 
-/// The quoted words of a list or dictionary, in their order: {0: 'person', 1: "driver's seat"}.
+/// The quoted words of a list or dictionary, in their order: {0: 'person', 1: "driver's seat"}, as
+/// usable_class_name() makes them.
 [[nodiscard]] std::vector<std::string> quoted_words(std::string_view text);
 
 }  // namespace stillmap

@@ -21,10 +21,11 @@ std::string environment(const char* name) {
 fs::path model_folder() {
   const std::string given = environment("STILLMAP_MODELS");
   if (!given.empty()) return given;
-  const std::string data = environment("XDG_DATA_HOME");
-  const fs::path base =
-      data.empty() ? fs::path(environment("HOME")) / ".local/share" : fs::path(data);
-  return base / "stillmap/models";
+  // Never a folder of the working directory: a library is loaded from this one.
+  const fs::path data = environment("XDG_DATA_HOME"), home = environment("HOME");
+  if (data.is_absolute()) return data / "stillmap/models";
+  if (home.is_absolute()) return home / ".local/share/stillmap/models";
+  return "/usr/local/share/stillmap/models";
 }
 
 std::vector<fs::path> onnx_runtime_libraries() {

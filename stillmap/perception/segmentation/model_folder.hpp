@@ -7,7 +7,8 @@
 namespace stillmap {
 
 /// The folder into which tools/fetch_models puts networks and ONNX Runtime: $STILLMAP_MODELS, else
-/// $XDG_DATA_HOME/stillmap/models, else ~/.local/share/stillmap/models.
+/// $XDG_DATA_HOME/stillmap/models, else ~/.local/share/stillmap/models, where these are absolute;
+/// else /usr/local/share/stillmap/models.
 [[nodiscard]] std::filesystem::path model_folder();
 
 /// The paths at which the library of ONNX Runtime is looked for, in order: $STILLMAP_ONNXRUNTIME

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Any rgb.txt, depth.txt and associations.txt give frames in order, of files in the folder, or are
+// refused.
+#include <algorithm>
+
+#include "fuzz/harness.hpp"
+#include "stillmap/io/stamp_text.hpp"
+#include "stillmap/sensor/tum_lists.hpp"
+
+namespace stillmap::fuzz {
+namespace {
+
+void read(std::string_view bytes) {
+  static const MemoryFolder folder;
+  const std::vector<std::string_view> parts = parts_of(bytes, 3);
+  (void)folder.put("rgb.txt", parts[0]);
+  (void)folder.put("depth.txt", parts[1]);
+  const std::filesystem::path associations = folder.put("associations.txt", parts[2]);
+  if (parts[2].empty()) std::filesystem::remove(associations);
+  read_or_refuse([&] {
+    const std::vector<SequenceEntry> entries = read_sequence_entries(folder.path());
+    require(!entries.empty(), "there are frames");
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      require(i == 0 || entries[i - 1].stamp.seconds < entries[i].stamp.seconds, "in order");
+      require(parse_stamp(entries[i].stamp.text)->seconds == entries[i].stamp.seconds, "a stamp");
+      for (const auto& file : {entries[i].color_file, entries[i].depth_file}) {
+        const auto rest = std::ranges::mismatch(folder.path(), file.lexically_normal());
+        require(rest.in1 == folder.path().end(), "a file in the folder");
+      }
+    }
+  });
+}
+
+}  // namespace
+}  // namespace stillmap::fuzz
+
+STILLMAP_FUZZER(stillmap::fuzz::read)

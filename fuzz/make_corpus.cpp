@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+// make_corpus FOLDER: valid inputs for all fuzzers but that of sessions, in a folder for each. They
+// are made here, because many are large and none is precious.
+#include <random>
+
+#include <fmt/core.h>
+
+#include "stillmap/config/config_io.hpp"
+#include "stillmap/io/atomic_file.hpp"
+#include "stillmap/io/image_io.hpp"
+#include "stillmap/io/ply.hpp"
+#include "stillmap/sensor/camera_io.hpp"
+#include "tests/support/sample_config.hpp"
+
+namespace stillmap {
+namespace {
+
+namespace fs = std::filesystem;
+
+ColorImage random_color(int width, int height) {
+  std::mt19937 rng(1);
+  cv::Mat3b rgb(height, width);
+  for (cv::Vec3b& pixel : rgb) pixel = {static_cast<std::uint8_t>(rng()), 100, 200};
+  return ColorImage(rgb);
+}
+
+PointCloud some_points() {
+  PointCloud cloud;
+  for (int i = 0; i < 5; ++i) {
+    cloud.positions.emplace_back(0.1F * static_cast<float>(i), -1.5F, 2.F);
+    cloud.colors.push_back({1, 2, 3});
+    cloud.labels.push_back(static_cast<std::uint8_t>(i));
+    cloud.normals.emplace_back(0.F, 0.F, 1.F);
+  }
+  return cloud;
+}
+
+void write(const fs::path& folder, const std::string& fuzzer, const std::vector<std::string>& all) {
+  fs::create_directories(folder / fuzzer);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    write_file_atomically(folder / fuzzer / fmt::format("valid_{}", i), all[i]);
+  }
+}
+
+void write_images(const fs::path& folder) {
+  const cv::Mat1b mask(8, 6, std::uint8_t{3});
+  write(folder,
+        "png",
+        {encode_png(random_color(7, 5)),
+         encode_mask_png(mask),
+         encode_depth_png(DepthImage(cv::Mat1f(4, 4, 1.5F)), 5000)});
+  std::vector<std::string> jpegs;
+  for (const int quality : {10, 95}) {
+    const std::vector<std::uint8_t> bytes = encode_jpeg(random_color(20, 17), quality);
+    jpegs.emplace_back(bytes.begin(), bytes.end());
+  }
+  write(folder, "jpeg", jpegs);
+}
+
+void write_texts(const fs::path& folder) {
+  write(folder,
+        "lists",
+        {"# timestamp filename\n1.5 rgb/1.5.png\n2.5 rgb/2.5.png\n----\n1.51 depth/1.png\n"
+         "2.49 depth/2.png\n----\n",
+         "1 rgb/1.png\r\n----\n----\n1.0 rgb/1.png 1.01 depth/1.png\n"});
+  write(folder,
+        "trajectory",
+        {"# stamp tx ty tz qx qy qz qw\n1.5 1 2 3 0 0 0 1\n2.5e0 -1 0.5 .25 0.5 0.5 0.5 0.5\n"});
+  test::Config config;
+  write(folder,
+        "config",
+        {dump_yaml(list_fields(config)), "tracking: {features: 500}\n", "tracking.features=500"});
+  write(folder,
+        "camera",
+        {format_camera_yaml(builtin_camera("tum_fr1")),
+         R"({"camera":{"width":640,"height":480,"fx":500,"fy":500,"cx":320,"cy":240}})"});
+  write(folder,
+        "live_record",
+        {R"({"stamp":"1.5","frame":0,"objects_of":[0]})"
+         "\n"
+         R"({"stamp":"1.6","frame":2,"objects_of":[]})"
+         "\n"});
+}
+
+}  // namespace
+
+void write_corpus(const fs::path& folder) {
+  write_images(folder);
+  write_texts(folder);
+  write(folder,
+        "ply",
+        {encode_ply(some_points()), encode_ply(some_points(), PlyFormat::kAscii), encode_ply({})});
+  cv::Mat1b mask = cv::Mat1b::zeros(24, 32);
+  mask(5, 6) = 4;
+  const std::string line =
+      R"({"stamp":"1.5","objects":[{"id":4,"class":"person","score":0.5,"box":[1,2,30,20]}]})";
+  write(folder, "detections", {line + "\n----\n", line + "\n----\n" + encode_mask_png(mask)});
+  using namespace std::string_literals;
+  write(
+      folder,
+      "export_kind",
+      {"{0: 'person', 1: \"chair\"}----\nsegment----\n\x01\x04\x01\x03\x40\x40\x01\x04\x01\x02\x10\x10\x40\x01"s,
+       "----\n----\n\x01\x04\x01\x03\x40\x40\x01\x03\x01\x54\x15\x00\x01"s});
+}
+
+}  // namespace stillmap
+
+int main(int argc, char** argv) {
+  if (argc != 2) return 2;
+  stillmap::write_corpus(argv[1]);
+}

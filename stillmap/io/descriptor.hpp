@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace stillmap {
+
+/// A file descriptor that its destructor closes.
+class Descriptor {
+ public:
+  explicit Descriptor(int fd = -1) : fd_(fd) {}
+  Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  Descriptor& operator=(Descriptor&& other) noexcept {
+    std::swap(fd_, other.fd_);
+    return *this;
+  }
+  ~Descriptor();
+
+  [[nodiscard]] int get() const { return fd_; }
+  [[nodiscard]] int close();
+
+ private:
+  int fd_;
+};
+
+/// The text of an error number.
+[[nodiscard]] std::string error_text(int error_number);
+
+/// Writes all bytes. Messages call the file `shown`.
+void write_all(const Descriptor& file, std::string_view bytes, const std::filesystem::path& shown);
+
+/// Closes the file, where `flush` once its bytes are on the disk.
+void close_written(Descriptor& file, bool flush, const std::filesystem::path& shown);
+
+}  // namespace stillmap
