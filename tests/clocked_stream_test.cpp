@@ -19,7 +19,7 @@ struct Given {
 // What a camera gives to somebody who takes so long for each frame.
 Given take_all(double speed, const std::vector<double>& work_s) {
   TestClock clock;
-  TumFolder wall(wall_sequence());
+  SequenceStream wall(wall_sequence());
   ClockedStream camera(wall, speed, clock);
   Given given;
   const double begin_s = clock.now_s();
@@ -72,9 +72,36 @@ TEST(ClockedStream, OneLateFrameCostsNothingIfTheNextIsFast) {
   EXPECT_EQ(take_all(1.0, work_s).dropped, 1U);
 }
 
+// Frames that cannot be read, at given times.
+class StampedDamage : public FrameStream {
+ public:
+  explicit StampedDamage(std::vector<double> stamps_s) : stamps_s_(std::move(stamps_s)) {}
+  [[nodiscard]] const CameraModel& camera() const override { return camera_; }
+  [[nodiscard]] std::optional<StreamedFrame> next() override {
+    if (next_ == stamps_s_.size()) return std::nullopt;
+    const double stamp_s = stamps_s_[next_];
+    return DamagedFrame{FrameId(static_cast<std::uint32_t>(next_++)), {stamp_s, ""}, ""};
+  }
+
+ private:
+  CameraModel camera_;
+  std::vector<double> stamps_s_;
+  std::size_t next_ = 0;
+};
+
+TEST(ClockedStream, CutsPausesOfARecording) {
+  StampedDamage recording({100, 101, 110.5, 400, 401, 1000});
+  TestClock clock;
+  ClockedStream camera(recording, 2, clock);
+  const double begin_s = clock.now_s();
+  std::vector<double> at_s;
+  while (camera.next()) at_s.push_back(clock.now_s() - begin_s);
+  EXPECT_EQ(at_s, (std::vector<double>{0, 0.5, 5.25, 5.75, 6.25, 6.75}));
+}
+
 TEST(ClockedStream, CanBeGivenUp) {
   TestClock clock;
-  TumFolder wall(wall_sequence());
+  SequenceStream wall(wall_sequence());
   ClockedStream camera(wall, 1, clock);
   EXPECT_TRUE(camera.next());
 }

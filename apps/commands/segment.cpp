@@ -17,13 +17,14 @@
 #include "apps/image_names.hpp"
 #include "apps/option_value.hpp"
 #include "apps/progress_bar.hpp"
+#include "apps/sequence_option.hpp"
 #include "stillmap/concurrency/parallel.hpp"
 #include "stillmap/core/error.hpp"
 #include "stillmap/io/image_io.hpp"
 #include "stillmap/perception/detections/class_names.hpp"
 #include "stillmap/perception/detections/detections_io.hpp"
 #include "stillmap/perception/segmentation/segmenter.hpp"
-#include "stillmap/sensor/tum_lists.hpp"
+#include "stillmap/sensor/sequence_formats.hpp"
 #include "tooling/pipeline/object_watch.hpp"
 
 namespace stillmap {
@@ -32,7 +33,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct SegmentArguments {
-  std::string sequence;
+  SequenceArguments sequence;
   std::string out;
   std::string segmenter;
   std::size_t threads = 2;
@@ -56,9 +57,9 @@ fs::path place_of(const fs::path& path) {
 
 // Results have the same file names as masks and detections of the input may have.
 void check_out(const SegmentArguments& arguments) {
-  const fs::path out = place_of(arguments.out), sequence = place_of(arguments.sequence);
+  const fs::path out = place_of(arguments.out), sequence = place_of(arguments.sequence.path);
   bool overwrites = out == sequence;
-  for (const char* folder : {"rgb", "depth", "truth"}) {
+  for (const char* folder : {"rgb", "color", "depth", "truth"}) {
     overwrites = overwrites || is_in(out, place_of(sequence / folder));
   }
   constexpr std::string_view kFolder = "detections:", kMasks = "masks:";
@@ -73,25 +74,29 @@ void check_out(const SegmentArguments& arguments) {
   throw Error(
       "--out {}: this is the input, which would be overwritten; name another folder such as {}",
       arguments.out,
-      (fs::path(arguments.sequence) / "detections").string());
+      (fs::path(arguments.sequence.path) / "detections").string());
 }
 
 // The size of the first image that can be read.
-cv::Size image_size(const std::vector<SequenceEntry>& entries) {
-  for (const SequenceEntry& entry : entries) {
+cv::Size image_size(const SequenceContent& content) {
+  for (std::size_t i = 0; i < content.entries.size(); ++i) {
     try {
-      return read_color(entry.color_file).mat.size();
+      return content.images->color(i).mat.size();
     } catch (const DamagedImage&) {
-      if (&entry == &entries.back()) throw;
+      if (i + 1 == content.entries.size()) throw;
     }
   }
   throw Error("a sequence without images");
 }
 
-Found segment_frame(const Segmenter& segmenter, const SequenceEntry& entry, cv::Size size) {
+Found segment_frame(const Segmenter& segmenter,
+                    const SequenceContent& content,
+                    std::size_t index,
+                    cv::Size size) {
+  const SequenceEntry& entry = content.entries[index];
   Found frame;
   try {
-    const ColorImage color = read_color(entry.color_file);
+    const ColorImage color = content.images->color(index);
     if (color.mat.size() != size) {
       throw Error("{}: {}x{} pixels, expected {}x{} as the images before",
                   entry.color_file.string(),
@@ -116,8 +121,9 @@ void add_unknown_classes(const FrameDetections& frame, std::set<std::string>& un
 
 void segment(const SegmentArguments& arguments) {
   check_out(arguments);
-  const std::vector<SequenceEntry> entries = read_sequence_entries(arguments.sequence);
-  const cv::Size size = image_size(entries);
+  const SequenceContent content = open_content(arguments.sequence);
+  const std::vector<SequenceEntry>& entries = content.entries;
+  const cv::Size size = image_size(content);
   // Frames are processed in parallel, each by one thread.
   const std::unique_ptr<Segmenter> segmenter =
       option_value("--segmenter", arguments.segmenter, [&](const std::string& text) {
@@ -128,11 +134,12 @@ void segment(const SegmentArguments& arguments) {
   std::size_t objects = 0;
   std::set<std::string> unknown;
   ProgressBar progress("frames");
+  for (const std::string& warning : content.remarks.warnings) progress.warn(warning);
   const auto start = std::chrono::steady_clock::now();
   produce_in_parallel(
       entries.size(),
       arguments.threads,
-      [&](std::size_t i) { return segment_frame(*segmenter, entries[i], size); },
+      [&](std::size_t i) { return segment_frame(*segmenter, content, i, size); },
       [&](std::size_t i, const Found& frame) {
         if (frame.second) progress.warn(*frame.second + "; taken for a frame without objects");
         writer.add(frame.first);
@@ -159,8 +166,7 @@ void add_segment_command(CLI::App& app, CommandResult&) {
   CLI::App* command =
       app.add_subcommand("segment", "Find people and things in every image of a sequence");
   const auto arguments = std::make_shared<SegmentArguments>();
-  command->add_option("SEQUENCE", arguments->sequence, "folder in the TUM RGB-D layout")
-      ->required();
+  add_sequence_options(*command, arguments->sequence);
   command
       ->add_option("--out",
                    arguments->out,

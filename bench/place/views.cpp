@@ -7,7 +7,7 @@
 
 #include "stillmap/core/error.hpp"
 #include "stillmap/io/trajectory_io.hpp"
-#include "stillmap/sensor/tum_sequence.hpp"
+#include "stillmap/sensor/sequence.hpp"
 #include "stillmap/slam/features/orb_extractor.hpp"
 
 namespace stillmap {
@@ -33,7 +33,7 @@ std::vector<View> read_views(const std::string& text, std::size_t gap) {
   const std::size_t at = label.find('@');
   SequenceOptions options;
   if (at != std::string::npos) options.camera = builtin_camera(label.substr(at + 1));
-  const TumSequence sequence = TumSequence::open(text.substr(equals + 1), options);
+  const Sequence sequence = Sequence::open(text.substr(equals + 1), options);
   const Trajectory truth = read_trajectory(sequence.groundtruth_file().value());
   OrbExtractor extractor({}, sequence.camera());
   std::vector<View> views;

@@ -12,7 +12,8 @@
 namespace stillmap {
 
 /// Plays another stream as a camera would: each frame arrives at its time, and only the newest
-/// waits. A frame that is not fetched before the next one arrives is dropped.
+/// waits. A frame that is not fetched before the next one arrives is dropped. Nobody waits for a
+/// recording that was paused: a pause of more than 10 s between two stamps becomes one of 1 s.
 class ClockedStream : public FrameStream {
  public:
   /// Time passes `speed` times as fast as the stamps say; it begins with the first call of next().
@@ -38,6 +39,7 @@ class ClockedStream : public FrameStream {
   void take(std::optional<StreamedFrame>& frame);
 
   static constexpr std::size_t kAhead = 4;
+  static constexpr double kLongestPauseS = 10, kCutPauseS = 1;
   FrameStream& stream_;
   double speed_;
   Clock& clock_;
@@ -47,7 +49,8 @@ class ClockedStream : public FrameStream {
   double coming_arrival_s_ = 0;
   double arrival_s_ = 0;
   std::optional<double> begin_s_;  // of the clock
-  double first_stamp_s_ = 0;
+  double first_stamp_s_ = 0;       // the stamp at the begin, later by what pauses were cut by
+  double last_stamp_s_ = 0;
   std::size_t dropped_ = 0;
 };
 

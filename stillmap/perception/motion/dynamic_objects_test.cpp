@@ -205,7 +205,7 @@ SequenceFrame frame_with_objects(const TruthSequence& data, std::uint32_t index)
 
 /// The pixels that a mode covers in every ninth frame of a sequence, at true poses.
 Result run_on(const TruthSequence& data, const DynamicsMode& mode) {
-  const TumSequence& sequence = data.sequence();
+  const Sequence& sequence = data.sequence();
   const Trajectory poses = read_trajectory(*sequence.groundtruth_file());
   const DynamicObjects dynamics({}, sequence.camera(), mode);
   const std::uint32_t back = mode.jumps == JumpRule::kWarpedFrames ? 15 : 1;

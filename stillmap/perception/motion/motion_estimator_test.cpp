@@ -212,7 +212,7 @@ struct MotionScore {
 
 /// The motion states of all frames of a sequence, at true poses.
 MotionScore score_motion(const TruthSequence& data) {
-  const TumSequence& sequence = data.sequence();
+  const Sequence& sequence = data.sequence();
   const Trajectory poses = read_trajectory(*sequence.groundtruth_file());
   const DynamicObjects dynamics({}, sequence.camera(), dynamics_mode("mask"));
   MotionEstimator states({}, sequence.camera());
