@@ -89,16 +89,22 @@ SequenceContent open_image_folders(const fs::path& folder, const ReadingOptions&
   for (const fs::path& json : files_beside(folder, ".json")) {
     if (camera = read_intrinsic_json(json); camera) break;
   }
-  SequenceContent content = pair_numbered(
-      files_ending(folders->color, ""), files_ending(folders->depth, ""), folder, options);
+  const std::vector<fs::path> colors = files_ending(folders->color, "");
+  SequenceContent content =
+      pair_numbered(colors, files_ending(folders->depth, ""), folder, options);
   content.camera = camera;
   const std::vector<fs::path> logs = files_beside(folder, ".log");
   const fs::path poses = folder / "groundtruth.txt";
   if (path_exists(poses)) {
     content.groundtruth = [poses, options] { return read_groundtruth(poses, options); };
   } else if (!logs.empty()) {
-    content.groundtruth = [log = logs.front(), entries = content.entries] {
-      return read_pose_log(log, entries);
+    const bool all_paired = colors.size() == content.entries.size();
+    content.groundtruth = [log = logs.front(), entries = content.entries, all_paired] {
+      if (all_paired) return read_pose_log(log, entries);
+      return GroundTruth{{},
+                         {fmt::format("no ground truth: {} counts colour images, of which some "
+                                      "have no depth image",
+                                      log.string())}};
     };
   }
   return content;

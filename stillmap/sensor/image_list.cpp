@@ -5,6 +5,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "stillmap/core/error.hpp"
@@ -48,8 +49,10 @@ std::string_view text_of(std::string_view row, const Word& word) {
 std::optional<double> number_in(std::string_view text) {
   double value = 0;
   const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (status == std::errc::invalid_argument || end != text.data() + text.size())
+  if (status == std::errc::invalid_argument || end != text.data() + text.size()) {
     return std::nullopt;
+  }
+  if (status == std::errc::result_out_of_range) return std::numeric_limits<double>::infinity();
   return value;
 }
 

@@ -249,6 +249,9 @@ TEST_F(Layouts, Open3dAndRedwood) {
   write("o3d/trajectory.log", log);
   expect_same(Sequence::open(folder("o3d")), "images");
   EXPECT_EQ(Sequence::open(folder("o3d")).camera().fy, 21);
+  fs::rename(folder("o3d") / "depth" / "000001.png", folder("o3d") / "depth" / "000009.png");
+  EXPECT_THAT(Sequence::open(folder("o3d")).groundtruth().value().warnings,
+              ElementsAre(HasSubstr("trajectory.log counts colour images")));
   write("o3d/camera_intrinsic.json", R"({"width":16,"height":12,"intrinsic_matrix":[20,0,0]})");
   EXPECT_THAT(error_of([&] { (void)Sequence::open(folder("o3d")); }),
               HasSubstr("camera_intrinsic.json: 'intrinsic_matrix' is no list of 9 numbers"));

@@ -39,10 +39,9 @@ std::optional<Eigen::Isometry3d> pose_of(std::span<const double> n, const std::s
   return make_pose(Eigen::Quaterniond(R), {n[3], n[7], n[11]});
 }
 
-void count_left_out(GroundTruth& truth, std::size_t left_out, const fs::path& place) {
-  if (left_out == 0) return;
-  truth.warnings.push_back(
-      fmt::format("{}: {} frames without a finite pose are left out", place.string(), left_out));
+std::vector<std::string> left_out_warning(std::size_t frames, const fs::path& place) {
+  if (frames == 0) return {};
+  return {fmt::format("{}: {} frames without a finite pose are left out", place.string(), frames)};
 }
 
 // Nothing in place of what cannot be read, with a warning that says why.
@@ -71,9 +70,14 @@ GroundTruth read_pose_files(const std::vector<SequenceEntry>& entries,
       const std::vector<double> numbers =
           numbers_in(read_text(path, kMaxPoseBytes), path.string(), kMatrixNumbers);
       const std::optional<Eigen::Isometry3d> pose = pose_of(numbers, path.string());
-      pose ? truth.poses.push_back({entry.stamp, *pose}) : static_cast<void>(++left_out);
+      if (pose) {
+        truth.poses.push_back({entry.stamp, *pose});
+      } else {
+        ++left_out;
+      }
     }
-    count_left_out(truth, left_out, pose_file(entries.front().color_file).parent_path());
+    truth.warnings =
+        left_out_warning(left_out, pose_file(entries.front().color_file).parent_path());
     return truth;
   });
 }
@@ -93,17 +97,16 @@ GroundTruth read_pose_log(const fs::path& path, const std::vector<SequenceEntry>
     for (std::size_t at = 0; at < numbers.size(); at += kBlockNumbers) {
       const std::span<const double> block(&numbers[at], kBlockNumbers);
       const std::optional<Eigen::Isometry3d> pose = pose_of(block.subspan(3), path.string());
-      const double frame = block[0];
-      const bool known = frame >= 0 && frame < static_cast<double>(entries.size());
-      if (!pose || !known ||
-          (!truth.poses.empty() && truth.poses.back().stamp.seconds >=
-                                       entries[static_cast<std::size_t>(frame)].stamp.seconds)) {
+      const bool known = block[0] >= 0 && block[0] < static_cast<double>(entries.size());
+      const Stamp stamp = known ? entries[static_cast<std::size_t>(block[0])].stamp : Stamp{};
+      const bool later = truth.poses.empty() || truth.poses.back().stamp.seconds < stamp.seconds;
+      if (!pose || !known || !later) {
         ++left_out;
-        continue;
+      } else {
+        truth.poses.push_back({stamp, *pose});
       }
-      truth.poses.push_back({entries[static_cast<std::size_t>(frame)].stamp, *pose});
     }
-    count_left_out(truth, left_out, path);
+    truth.warnings = left_out_warning(left_out, path);
     return truth;
   });
 }

@@ -324,6 +324,8 @@ TEST_F(SequenceTest, RefusesBadLists) {
   EXPECT_THAT(open_error(), AllOf(HasSubstr("rgb.txt:2"), HasSubstr("9.0 does not come after")));
   write("rgb.txt", "nan rgb/a.png\n");
   EXPECT_THAT(open_error(), HasSubstr("rgb.txt:1: column 1 is 'nan'"));
+  write("rgb.txt", "1e400 rgb/a.png\n");
+  EXPECT_THAT(open_error(), HasSubstr("column 1 is '1e400'"));
   write("rgb.txt", "../x rgb/a.png\n");
   EXPECT_THAT(open_error(), HasSubstr("finite number"));
   write("rgb.txt", "10.0\n");

@@ -158,47 +158,41 @@ std::optional<RosCameraInfo> info_of(const BagFile& bag, const std::string& topi
   return parse_ros_camera_info(bag.read(index_of(bag, name), 0), name);
 }
 
-// Sets the camera that takes the colour images, or why it is not known.
-void set_camera(SequenceContent& content, const BagFile& bag, const std::string& topic) {
+// The camera that takes the colour images, or why it is not known.
+struct ToldCamera {
+  std::optional<CameraModel> camera;
+  std::string problem;
+};
+
+ToldCamera told_camera(const BagFile& bag, const std::string& topic) {
   const std::optional<RosCameraInfo> info = info_of(bag, topic);
-  if (!info) {
-    content.no_camera = fmt::format("no CameraInfo for {}", topic);
-    return;
-  }
+  if (!info) return {{}, fmt::format("no CameraInfo for {}", topic)};
   try {
-    content.camera = camera_of_info(*info, topic.find("rect") != std::string::npos, topic);
+    return {camera_of_info(*info, topic.find("rect") != std::string::npos, topic), ""};
   } catch (const Error& error) {
-    content.no_camera = error.what();
+    return {{}, error.what()};
   }
 }
 
-// Whether depth is seen from where colour is, as far as the first images and the intrinsics tell.
-void check_registered(SequenceContent& content,
-                      const BagFile& bag,
-                      const ImageMessages& color,
-                      const ImageMessages& depth) {
-  const cv::Size color_px = content.images->color(0).mat.size(),
-                 depth_px = content.images->depth(0, 1).mat.size();
-  if (color_px != depth_px) {
-    throw Error("{}: {}x{} pixels, but {} has {}x{}; expected depth that is registered to colour",
-                depth.list.name,
-                depth_px.width,
-                depth_px.height,
-                color.list.name,
-                color_px.width,
-                color_px.height);
-  }
-  const std::optional<RosCameraInfo> info = info_of(bag, depth.list.name);
-  if (!info || !content.camera) return;
+void check_sizes(const ImageReader& images, const std::string& color, const std::string& depth) {
+  const cv::Size color_px = images.color(0).mat.size(), depth_px = images.depth(0, 1).mat.size();
+  if (color_px == depth_px) return;
+  throw Error("{}: {}x{} pixels, but {} has {}x{}; expected depth that is registered to colour",
+              depth,
+              depth_px.width,
+              depth_px.height,
+              color,
+              color_px.width,
+              color_px.height);
+}
+
+// Whether depth has the intrinsics of colour, as it has when it is registered, or none of its own.
+bool same_intrinsics(const BagFile& bag, const CameraModel& color, const std::string& depth) {
   constexpr double kSamePx = 2;
-  const double off_px = std::max(std::abs(info->intrinsics[0] - content.camera->fx),
-                                 std::abs(info->intrinsics[2] - content.camera->cx));
-  if (off_px > kSamePx) {
-    content.remarks.warnings.push_back(
-        fmt::format("{} has other intrinsics than {}: depth does not look registered to colour",
-                    depth.list.name,
-                    color.list.name));
-  }
+  const std::optional<RosCameraInfo> info = info_of(bag, depth);
+  if (!info) return true;
+  return std::abs(info->intrinsics[0] - color.fx) < kSamePx &&
+         std::abs(info->intrinsics[2] - color.cx) < kSamePx;
 }
 
 }  // namespace
@@ -237,8 +231,16 @@ SequenceContent open_ros_bag(const fs::path& path, const ReadingOptions& options
   for (const Remarks* remarks : {&color.list.remarks, &depth.list.remarks, &paired.remarks}) {
     content.remarks.add(*remarks);
   }
-  set_camera(content, *bag, color.list.name);
-  check_registered(content, *bag, color, depth);
+  check_sizes(*content.images, color.list.name, depth.list.name);
+  ToldCamera told = told_camera(*bag, color.list.name);
+  if (told.camera && !same_intrinsics(*bag, *told.camera, depth.list.name)) {
+    content.remarks.warnings.push_back(
+        fmt::format("{} has other intrinsics than {}: depth does not look registered to colour",
+                    depth.list.name,
+                    color.list.name));
+  }
+  content.camera = std::move(told.camera);
+  content.no_camera = std::move(told.problem);
   return content;
 }
 
