@@ -17,7 +17,6 @@
 #include "stillmap/core/error.hpp"
 #include "stillmap/core/random.hpp"
 #include "stillmap/geometry/se3.hpp"
-#include "stillmap/io/trajectory_io.hpp"
 #include "stillmap/perception/detections/detections_io.hpp"
 #include "stillmap/sensor/camera_io.hpp"
 #include "stillmap/sensor/sequence.hpp"
@@ -56,7 +55,7 @@ Place open_place(const std::string& text) {
   if (std::filesystem::exists(found)) {
     place.detections = DetectionsFolder::open(found, {camera.width_px, camera.height_px});
   }
-  const Trajectory truth = read_trajectory(place.sequence.groundtruth_file().value());
+  const Trajectory truth = place.sequence.groundtruth().value().poses;
   for (std::uint32_t i = 0; i < place.sequence.size(); ++i) {
     place.T_truth_camera.push_back(pose_at(truth, place.sequence.entry(FrameId(i)).stamp.seconds));
   }

@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "stillmap/core/error.hpp"
-#include "stillmap/io/trajectory_io.hpp"
 #include "stillmap/sensor/sequence.hpp"
 #include "stillmap/slam/features/orb_extractor.hpp"
 
@@ -34,7 +33,7 @@ std::vector<View> read_views(const std::string& text, std::size_t gap) {
   SequenceOptions options;
   if (at != std::string::npos) options.camera = builtin_camera(label.substr(at + 1));
   const Sequence sequence = Sequence::open(text.substr(equals + 1), options);
-  const Trajectory truth = read_trajectory(sequence.groundtruth_file().value());
+  const Trajectory truth = sequence.groundtruth().value().poses;
   OrbExtractor extractor({}, sequence.camera());
   std::vector<View> views;
   for (std::size_t i = 0; i < sequence.size(); i += gap) {
