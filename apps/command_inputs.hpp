@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "stillmap/io/input_files.hpp"
-#include "stillmap/sensor/tum_sequence.hpp"
+#include "stillmap/sensor/sequence_content.hpp"
 
 namespace stillmap {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "stillmap/sensor/tum_sequence.hpp"
+#include "stillmap/sensor/sequence_content.hpp"
 
 namespace stillmap {
 

@@ -50,13 +50,16 @@ std::string gap_lines(const RunReport& report) {
 }  // namespace
 
 std::string run_summary(const RunReport& report,
+                        const std::string& input_line,
                         const std::string& objects_line,
                         const std::filesystem::path& out) {
-  std::string text = fmt::format("objects     {}\ntracked     {} of {} frames, {} key frames\n",
-                                 objects_line,
-                                 report.frames_tracked,
-                                 report.frames_total,
-                                 report.keyframes.size());
+  std::string text =
+      fmt::format("input       {}\nobjects     {}\ntracked     {} of {} frames, {} key frames\n",
+                  input_line,
+                  objects_line,
+                  report.frames_tracked,
+                  report.frames_total,
+                  report.keyframes.size());
   text += gap_lines(report);
   if (report.ate) {
     text += fmt::format("ATE         {:.4f} m rmse over {} poses\n",

@@ -12,7 +12,7 @@
 #include "simulation/synth/sequence_writer.hpp"
 #include "stillmap/core/error.hpp"
 #include "stillmap/perception/detections/detections_io.hpp"
-#include "stillmap/sensor/tum_sequence.hpp"
+#include "stillmap/sensor/sequence.hpp"
 
 namespace stillmap {
 
@@ -23,7 +23,7 @@ class RenderedOffice {
   static constexpr std::uint32_t kFrames = 12;
 
   RenderedOffice()
-      : sequence_(TumSequence::open(folder_)),
+      : sequence_(Sequence::open(folder_)),
         detections_(DetectionsFolder::open(
             folder_ / "detections", {sequence_.camera().width_px, sequence_.camera().height_px})) {
     for (std::uint32_t k = 0; k < kFrames; ++k) {
@@ -39,7 +39,7 @@ class RenderedOffice {
     std::filesystem::remove_all(folder_, ignored);
   }
 
-  [[nodiscard]] const TumSequence& sequence() const { return sequence_; }
+  [[nodiscard]] const Sequence& sequence() const { return sequence_; }
   [[nodiscard]] const DetectionsFolder& detections() const { return detections_; }
   [[nodiscard]] const CameraModel& camera() const { return sequence_.camera(); }
 
@@ -85,7 +85,7 @@ class RenderedOffice {
   }
 
   std::filesystem::path folder_ = write();
-  TumSequence sequence_;
+  Sequence sequence_;
   DetectionsFolder detections_;
   std::vector<FramePtr> frames_;
   std::vector<FrameDetections> found_;

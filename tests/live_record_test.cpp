@@ -67,7 +67,7 @@ TEST(LiveRecord, ThatIsBrokenIsRefusedByLine) {
 
 // The frames that a replay of the wall gives, or why it ends.
 std::vector<std::uint32_t> replay(const LiveRecord& record) {
-  TumFolder wall(wall_sequence(), {.begin = 4, .end = 14});
+  SequenceStream wall(wall_sequence(), {.begin = 4, .end = 14});
   ReplayedStream replayed(wall, record, "record.jsonl");
   std::vector<std::uint32_t> frames;
   while (const std::optional<StreamedFrame> frame = replayed.next()) {

@@ -30,7 +30,7 @@ SequenceRun run_live_wall(const Segmenter* segmenter, double frame_s) {
   options.live.emplace();
   options.live->clock = &clock;
   TimePasses time_passes(clock, frame_s);
-  TumFolder wall(wall_sequence());
+  SequenceStream wall(wall_sequence());
   return run_sequence(wall, {}, std::move(options), std::vector<Observer*>{&time_passes});
 }
 
@@ -40,7 +40,7 @@ SequenceRun run_again(const Segmenter* segmenter, const LiveRecord& record, int 
   options.threads = threads;
   options.live.emplace();
   options.live->record = record;
-  TumFolder wall(wall_sequence());
+  SequenceStream wall(wall_sequence());
   return run_sequence(wall, {}, std::move(options));
 }
 

@@ -25,7 +25,7 @@ SequenceRun run_wall(const Segmenter& segmenter, int threads, StageProbe probe) 
   options.segmenter = &segmenter;
   options.threads = threads;
   options.probe = std::move(probe);
-  TumFolder wall(wall_sequence());
+  SequenceStream wall(wall_sequence());
   return run_sequence(wall, config, std::move(options));
 }
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "stillmap/io/trajectory_io.hpp"
-#include "stillmap/sensor/tum_folder.hpp"
+#include "stillmap/sensor/sequence_stream.hpp"
 #include "tests/support/shared_data.hpp"
 #include "tooling/eval/ate.hpp"
 #include "tooling/pipeline/run_sequence.hpp"
@@ -24,8 +24,8 @@ class Freiburg1Xyz : public testing::Test {
   }
 
   [[nodiscard]] Accuracy measure(const SystemConfig& config, std::size_t stride) const {
-    TumFolder frames(TumSequence::open(folder_, {.camera = builtin_camera("tum_fr1")}),
-                     {.begin = 0, .end = {}, .stride = stride});
+    SequenceStream frames(Sequence::open(folder_, {.camera = builtin_camera("tum_fr1")}),
+                          {.begin = 0, .end = {}, .stride = stride});
     const SequenceRun run = run_sequence(frames, config, {});
     const auto ate = absolute_trajectory_error(read_trajectory(folder_ / "groundtruth.txt"),
                                                run.result.trajectory);

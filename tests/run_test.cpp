@@ -20,6 +20,7 @@ namespace {
 
 using testing::HasSubstr;
 using testing::MatchesRegex;
+using testing::Not;
 
 class Run : public Cli {
  protected:
@@ -115,7 +116,7 @@ TEST_F(Run, TakesPartsOfASequence) {
 }
 
 TEST_F(Run, RefusesWhatIsNoSequence) {
-  expect_refused("nowhere --out out", "nowhere: no such folder");
+  expect_refused("nowhere --out out", "nowhere: no such file or folder");
   write("wall/rgb.txt", "# empty\n");
   expect_refused("wall --out out", "rgb.txt");
   write("wall/rgb.txt", "2.0 rgb/a.png\n1.0 rgb/b.png\n");
@@ -143,9 +144,30 @@ TEST_F(Run, RefusesWrongArguments) {
   expect_refused("wall --out out --config c.yaml", "c.yaml:2");
 }
 
-TEST_F(Run, RefusesBrokenGroundTruth) {
-  write("bad.txt", "100.0 0 0 0 0 0 0 1\n100.1 nan 0 0 0 0 0 1\n");
-  expect_refused("wall --out out --groundtruth bad.txt", "bad.txt:2");
+TEST_F(Run, ABrokenGroundTruthIsAWarning) {
+  expect_refused("wall --out out --groundtruth nowhere.txt", "nowhere.txt: no such file");
+  write("bad.txt", "100.0 0 0 0 0 0 0 1\n100.1 0 0\n");
+  const Outcome bad = run("run wall --out out --frames 0:8 --groundtruth bad.txt");
+  EXPECT_EQ(bad.exit_code, 0);
+  EXPECT_THAT(bad.err, HasSubstr("warning: no ground truth: bad.txt:2: 3 columns"));
+  EXPECT_THAT(content("out/report.json"), HasSubstr("bad.txt:2"));
+  EXPECT_THAT(bad.out, Not(HasSubstr("ATE")));
+  write("wall/groundtruth.txt", "");
+  const Outcome none = run("run wall --out out --frames 0:8 --groundtruth none");
+  EXPECT_EQ(none.exit_code, 0);
+  EXPECT_EQ(none.err, "");
+}
+
+// Without lists the same images are the layout `images`, whose names are stamps.
+TEST_F(Run, GivesTheSameBytesForAnotherLayout) {
+  ASSERT_EQ(run("run wall --out a --frames 0:20").exit_code, 0);
+  std::filesystem::remove(folder_ / "wall" / "rgb.txt");
+  expect_refused("wall --out b", "rgb.txt is missing");
+  const Outcome forced = run("run wall --out b --frames 0:20 --format images");
+  EXPECT_EQ(forced.exit_code, 0);
+  EXPECT_THAT(forced.out, HasSubstr("input       images\n"));
+  EXPECT_EQ(content("a/trajectory.txt"), content("b/trajectory.txt"));
+  EXPECT_EQ(content("a/map.ply"), content("b/map.ply"));
 }
 
 TEST_F(Run, RefusesAnImageOfWrongSizeOrKindHalfway) {

@@ -13,7 +13,7 @@
 #include "stillmap/core/error.hpp"
 #include "stillmap/io/trajectory_io.hpp"
 #include "stillmap/sensor/associate.hpp"
-#include "stillmap/sensor/tum_sequence.hpp"
+#include "stillmap/sensor/sequence.hpp"
 #include "tooling/eval/ate.hpp"
 #include "tooling/eval/map_alignment.hpp"
 #include "tooling/eval/metrics_json.hpp"
@@ -46,7 +46,7 @@ TrajectoryFigures measure(const TrajectoryArguments& arguments) {
   figures.rpe = relative_pose_error(groundtruth.poses, estimate.poses);
   figures.tracked = estimate.poses.size();
   if (!arguments.sequence.empty()) {
-    figures.frames = TumSequence::open(arguments.sequence).size();
+    figures.frames = Sequence::open(arguments.sequence).size();
     if (figures.tracked > *figures.frames) {
       throw Error("{}: {} poses, but {} has only {} frames; is it of this sequence?",
                   arguments.estimate,

@@ -11,9 +11,9 @@
 
 #include "apps/commands.hpp"
 #include "apps/commands/evaluate.hpp"
+#include "apps/sequence_option.hpp"
 #include "stillmap/core/error.hpp"
-#include "stillmap/sensor/camera_io.hpp"
-#include "stillmap/sensor/tum_sequence.hpp"
+#include "stillmap/sensor/sequence.hpp"
 #include "tooling/eval/map_files.hpp"
 #include "tooling/eval/map_quality.hpp"
 #include "tooling/eval/metrics_json.hpp"
@@ -25,7 +25,7 @@ namespace {
 
 struct ResidueArguments {
   std::string run;
-  std::string sequence;
+  SequenceArguments sequence;
   std::string groundtruth;
   bool json = false;
 };
@@ -36,16 +36,17 @@ struct PosedSequence {
   std::map<std::uint32_t, Eigen::Isometry3d> T_world_camera;  ///< of frames
 };
 
-// The camera of the run. Runs of earlier versions did not keep it.
-TumSequence open_sequence(const ResidueArguments& arguments) {
+// With the camera of the run. Runs of earlier versions did not keep it.
+Sequence sequence_of(const ResidueArguments& arguments) {
+  SequenceArguments sequence = arguments.sequence;
   const std::filesystem::path camera = std::filesystem::path(arguments.run) / "camera.yaml";
-  if (!std::filesystem::exists(camera)) return TumSequence::open(arguments.sequence);
-  return TumSequence::open(arguments.sequence, {.camera = read_camera_yaml(camera)});
+  if (std::filesystem::exists(camera)) sequence.camera = camera.string();
+  return open_sequence(sequence);
 }
 
 // The frames that the run tracked, in its world frame.
 PosedSequence as_estimated(PointCloud map,
-                           const TumSequence& sequence,
+                           const Sequence& sequence,
                            const TrajectoryFile& estimate) {
   std::map<std::string, std::uint32_t> frame_of;
   for (std::uint32_t i = 0; i < sequence.size(); ++i) {
@@ -57,7 +58,7 @@ PosedSequence as_estimated(PointCloud map,
     if (found == frame_of.end()) {
       throw Error("{}: {} has no frame of the stamp {}; is the run of this sequence?",
                   estimate.file,
-                  sequence.folder().string(),
+                  sequence.path().string(),
                   pose.stamp.text);
     }
     posed.T_world_camera[found->second] = pose.T_world_camera;
@@ -67,7 +68,7 @@ PosedSequence as_estimated(PointCloud map,
 
 // All frames with true poses, in the world frame of the truth.
 PosedSequence as_true(const PointCloud& map,
-                      const TumSequence& sequence,
+                      const Sequence& sequence,
                       const TrajectoryFile& groundtruth,
                       const TrajectoryFile& estimate) {
   PosedSequence posed{.map = moved(map, required_alignment(groundtruth, estimate)),
@@ -85,7 +86,7 @@ Residue measure(const ResidueArguments& arguments) {
   const std::filesystem::path run = arguments.run;
   const TrajectoryFile estimate = read_trajectory_file((run / "trajectory.txt").string());
   PointCloud map = read_map(run / "map.ply");
-  const TumSequence sequence = open_sequence(arguments);
+  const Sequence sequence = sequence_of(arguments);
   // With ground truth, too, to check that the run is of this sequence.
   PosedSequence posed = as_estimated(std::move(map), sequence, estimate);
   if (!arguments.groundtruth.empty()) {
@@ -121,7 +122,7 @@ void add_evaluate_residue(CLI::App& evaluate) {
   CLI::App& command = *evaluate.add_subcommand(
       "residue", "The share of a map that its own depth images see through; needs no truth");
   command.add_option("RUN", arguments->run, "folder of the run")->required();
-  command.add_option("SEQUENCE", arguments->sequence, "folder of its sequence")->required();
+  add_sequence_options(command, arguments->sequence);
   command.add_option("--groundtruth",
                      arguments->groundtruth,
                      "true trajectory: tests with all frames of the sequence, at their true poses");

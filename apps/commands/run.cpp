@@ -12,15 +12,15 @@
 #include "apps/option_value.hpp"
 #include "apps/run_progress.hpp"
 #include "apps/run_summary.hpp"
+#include "apps/sequence_option.hpp"
 #include "apps/steady_clock.hpp"
 #include "apps/version.hpp"
 #include "stillmap/config/config_io.hpp"
 #include "stillmap/core/error.hpp"
 #include "stillmap/core/joined.hpp"
 #include "stillmap/io/atomic_file.hpp"
-#include "stillmap/io/trajectory_io.hpp"
-#include "stillmap/sensor/camera_io.hpp"
-#include "stillmap/sensor/tum_folder.hpp"
+#include "stillmap/sensor/groundtruth.hpp"
+#include "stillmap/sensor/sequence_stream.hpp"
 #include "stillmap/session/session_io.hpp"
 #include "tooling/eval/ate.hpp"
 #include "tooling/eval/rpe.hpp"
@@ -35,11 +35,10 @@ namespace {
 constexpr int kLostForGood = 3;
 
 struct RunArguments {
-  std::string sequence;
+  SequenceArguments sequence;
   std::string out;
   std::string config_file;
   std::vector<std::string> settings;
-  std::string camera;
   std::string segmenter;  // empty: auto where its networks are, else none
   std::string dynamics;   // empty: as configured
   std::string frames;
@@ -67,19 +66,6 @@ SystemConfig make_config(const RunArguments& arguments) {
   return config;
 }
 
-std::optional<CameraModel> chosen_camera(const std::string& name) {
-  if (name.empty()) return std::nullopt;
-  return camera_by_name(name);
-}
-
-TumSequence open_sequence(const RunArguments& arguments) {
-  try {
-    return TumSequence::open(arguments.sequence, {.camera = chosen_camera(arguments.camera)});
-  } catch (const UnknownCamera& error) {
-    throw Error("{} (--camera NAME or FILE names it)", error.what());
-  }
-}
-
 /// What finds people and things, and how that is said.
 struct ChosenSegmenter {
   std::unique_ptr<Segmenter> segmenter;  // null: nothing does
@@ -99,7 +85,7 @@ ChosenSegmenter default_segmenter(cv::Size image, const SegmenterOptions& option
 }
 
 ChosenSegmenter choose_segmenter(const RunArguments& arguments,
-                                 const TumSequence& sequence,
+                                 const Sequence& sequence,
                                  const CameraModel& camera,
                                  const DynamicsMode& mode) {
   const cv::Size image(camera.width_px, camera.height_px);
@@ -123,11 +109,11 @@ std::unique_ptr<RunFolder> prepare_out(const RunArguments& arguments) {
 }
 
 // No file that the run reads may be one that it writes.
-void check_outputs(const RunArguments& arguments, const TumSequence& sequence) {
+void check_outputs(const RunArguments& arguments, const Sequence& sequence) {
   InputFiles inputs;
-  add_sequence(inputs, arguments.sequence, sequence.entries());
+  add_sequence(inputs, arguments.sequence.path, sequence.entries());
   add_segmenter(inputs, arguments.segmenter);
-  add_camera(inputs, arguments.camera);
+  add_camera(inputs, arguments.sequence.camera);
   for (const std::string& file :
        {arguments.config_file, arguments.groundtruth, arguments.load, arguments.replay}) {
     inputs.add(file);
@@ -153,11 +139,14 @@ void check_outputs(const RunArguments& arguments, const TumSequence& sequence) {
   }
 }
 
-std::optional<Trajectory> read_groundtruth(const RunArguments& arguments,
-                                           const TumSequence& sequence) {
-  if (!arguments.groundtruth.empty()) return read_trajectory(arguments.groundtruth);
-  const std::optional<std::filesystem::path> own = sequence.groundtruth_file();
-  return own ? std::optional(read_trajectory(*own)) : std::nullopt;
+// The true poses that the options name, or the recording's own; none where they cannot be used.
+GroundTruth read_groundtruth(const RunArguments& arguments, const Sequence& sequence) {
+  if (arguments.groundtruth == "none") return {};
+  if (arguments.groundtruth.empty()) return sequence.groundtruth().value_or(GroundTruth{});
+  if (!path_exists(arguments.groundtruth)) {
+    throw Error("--groundtruth {}: no such file", arguments.groundtruth);
+  }
+  return read_groundtruth(arguments.groundtruth, sequence_options(arguments.sequence).reading);
 }
 
 void evaluate(RunReport& report) {
@@ -224,14 +213,14 @@ int run(const RunArguments& arguments) {
     throw Error(
         "--localize-only needs a map to find the camera in: name a map.stillmap with --load");
   }
-  const TumSequence sequence = open_sequence(arguments);
-  std::optional<Trajectory> groundtruth = read_groundtruth(arguments, sequence);
-  if (arguments.poses == "truth" && !groundtruth) {
-    throw Error("--poses truth: {} has no groundtruth.txt; name one with --groundtruth",
-                sequence.folder().string());
+  const Sequence sequence = open_sequence(arguments.sequence);
+  GroundTruth groundtruth = read_groundtruth(arguments, sequence);
+  if (arguments.poses == "truth" && groundtruth.poses.empty()) {
+    throw Error("--poses truth: {} has no ground truth; name one with --groundtruth",
+                sequence.path().string());
   }
-  const std::optional<SequenceTruth> truth = read_sequence_truth(arguments.sequence);
-  TumFolder frames(sequence, selected_frames(arguments));
+  const std::optional<SequenceTruth> truth = read_sequence_truth(arguments.sequence.path);
+  SequenceStream frames(sequence, selected_frames(arguments));
   const ChosenSegmenter chosen =
       choose_segmenter(arguments, sequence, frames.camera(), dynamics_mode(config.dynamics.mode));
   RunOptions options;
@@ -244,8 +233,14 @@ int run(const RunArguments& arguments) {
   options.live = live_options(arguments);
   SteadyClock clock;
   if (options.live) options.live->clock = &clock;
-  if (truth || arguments.poses == "truth") options.groundtruth = groundtruth;
+  const std::optional<Trajectory> true_poses =
+      groundtruth.poses.empty() ? std::nullopt : std::optional(std::move(groundtruth.poses));
+  if (truth || arguments.poses == "truth") options.groundtruth = true_poses;
   RunProgress progress(frames.size(), chosen.line);
+  std::vector<std::string> early = sequence.remarks().warnings;
+  early.insert(early.end(), groundtruth.warnings.begin(), groundtruth.warnings.end());
+  for (const std::string& warning : early) progress.on_warning(warning);
+  if (!chosen.warning.empty()) early.push_back(chosen.warning);
   std::vector<Observer*> observers = {&progress};
   std::optional<ObjectFolder> objects;
   if (!arguments.objects_out.empty()) {
@@ -255,11 +250,11 @@ int run(const RunArguments& arguments) {
   SequenceRun run = run_sequence(frames, config, std::move(options), observers);
 
   RunReport& report = run.report;
-  if (!chosen.warning.empty()) report.warnings.push_back(chosen.warning);
+  report.warnings.insert(report.warnings.begin(), early.begin(), early.end());
   report.version = kVersion;
   report.sequence = sequence.name();
   report.config_yaml = dump_yaml(list_fields(config));
-  report.groundtruth = std::move(groundtruth);
+  report.groundtruth = true_poses;
   evaluate(report);
   choose_map(run, arguments);
   if (truth) evaluate_maps(run, *truth);
@@ -269,22 +264,23 @@ int run(const RunArguments& arguments) {
   // The map of a run that only localises is the one that it was given.
   const Session* const session = arguments.localize_only ? nullptr : &run.session;
   out->write(run.result, report, {run.objects_jsonl, live_lines}, session);
-  print_output(run_summary(report, chosen.line, arguments.out));
+  print_output(run_summary(report, input_line(sequence), chosen.line, arguments.out));
   return run.result.lost_at_end ? kLostForGood : 0;
 }
 
 void add_inputs(CLI::App& command, RunArguments& arguments) {
-  command.add_option("SEQUENCE", arguments.sequence, "folder in the TUM RGB-D layout")->required();
+  add_sequence_options(command, arguments.sequence);
   command.add_option(
       "--camera",
-      arguments.camera,
+      arguments.sequence.camera,
       "tum_fr1, tum_fr2, tum_fr3, bonn or a camera.yaml; instead of the sequence's own");
   command.add_option("--frames", arguments.frames, "A:B, only frames A to B - 1, counted from 0");
   command.add_option("--stride", arguments.stride, "take every N-th frame")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1000}));
-  command.add_option("--groundtruth",
-                     arguments.groundtruth,
-                     "trajectory to compare with; instead of the sequence's own");
+  command.add_option(
+      "--groundtruth",
+      arguments.groundtruth,
+      "trajectory to compare with; instead of the sequence's own; none: with nothing");
 }
 
 void add_settings(CLI::App& command, RunArguments& arguments) {

@@ -14,6 +14,7 @@
 #include "apps/image_names.hpp"
 #include "apps/option_value.hpp"
 #include "apps/progress_bar.hpp"
+#include "apps/sequence_option.hpp"
 #include "stillmap/concurrency/parallel.hpp"
 #include "stillmap/core/error.hpp"
 #include "stillmap/io/image_io.hpp"
@@ -21,7 +22,7 @@
 #include "stillmap/perception/detections/detections_io.hpp"
 #include "stillmap/perception/segmentation/segmenter.hpp"
 #include "stillmap/sensor/image_warnings.hpp"
-#include "stillmap/sensor/tum_lists.hpp"
+#include "stillmap/sensor/sequence_formats.hpp"
 #include "tooling/pipeline/object_watch.hpp"
 
 namespace stillmap {
@@ -30,7 +31,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct SegmentArguments {
-  std::string sequence;
+  SequenceArguments sequence;
   std::string out;
   std::string segmenter;
   std::size_t threads = 2;
@@ -44,28 +45,32 @@ struct Found {
 
 void check_out(const SegmentArguments& arguments, const std::vector<SequenceEntry>& entries) {
   InputFiles inputs;
-  add_sequence(inputs, arguments.sequence, entries);
+  add_sequence(inputs, arguments.sequence.path, entries);
   add_segmenter(inputs, arguments.segmenter);
   inputs.check_output("--out", fs::path(arguments.out) / "detections.jsonl");
   inputs.check_output("--out", fs::path(arguments.out) / "masks");
 }
 
 // The size of the first image that can be read.
-cv::Size image_size(const std::vector<SequenceEntry>& entries) {
-  for (const SequenceEntry& entry : entries) {
+cv::Size image_size(const SequenceContent& content) {
+  for (std::size_t i = 0; i < content.entries.size(); ++i) {
     try {
-      return read_color(entry.color_file).mat.size();
+      return content.images->color(i).color.mat.size();
     } catch (const DamagedImage&) {
-      if (&entry == &entries.back()) throw;
+      if (i + 1 == content.entries.size()) throw;
     }
   }
   throw Error("a sequence without images");
 }
 
-Found segment_frame(const Segmenter& segmenter, const SequenceEntry& entry, cv::Size size) {
+Found segment_frame(const Segmenter& segmenter,
+                    const SequenceContent& content,
+                    std::size_t index,
+                    cv::Size size) {
+  const SequenceEntry& entry = content.entries[index];
   Found frame;
   try {
-    const auto [color, warning] = read_color_file(entry.color_file);
+    const auto [color, warning] = content.images->color(index);
     if (color.mat.size() != size) {
       throw Error("{}: {}x{} pixels, expected {}x{} as the images before",
                   entry.color_file.string(),
@@ -90,9 +95,10 @@ void add_unknown_classes(const FrameDetections& frame, std::set<std::string>& un
 }
 
 void segment(const SegmentArguments& arguments) {
-  const std::vector<SequenceEntry> entries = read_sequence_entries(arguments.sequence);
+  const SequenceContent content = open_content(arguments.sequence);
+  const std::vector<SequenceEntry>& entries = content.entries;
   check_out(arguments, entries);
-  const cv::Size size = image_size(entries);
+  const cv::Size size = image_size(content);
   // Frames are processed in parallel, each by one thread.
   const std::unique_ptr<Segmenter> segmenter =
       option_value("--segmenter", arguments.segmenter, [&](const std::string& text) {
@@ -104,11 +110,12 @@ void segment(const SegmentArguments& arguments) {
   std::set<std::string> unknown;
   ImageWarnings warnings;
   ProgressBar progress("frames");
+  for (const std::string& warning : content.remarks.warnings) progress.warn(warning);
   const auto start = std::chrono::steady_clock::now();
   produce_in_parallel(
       entries.size(),
       arguments.threads,
-      [&](std::size_t i) { return segment_frame(*segmenter, entries[i], size); },
+      [&](std::size_t i) { return segment_frame(*segmenter, content, i, size); },
       [&](std::size_t i, const Found& frame) {
         if (!frame.damage.empty()) {
           progress.warn(frame.damage + "; taken for a frame without objects");
@@ -139,8 +146,7 @@ void add_segment_command(CLI::App& app, CommandResult&) {
   CLI::App* command =
       app.add_subcommand("segment", "Find people and things in every image of a sequence");
   const auto arguments = std::make_shared<SegmentArguments>();
-  command->add_option("SEQUENCE", arguments->sequence, "folder in the TUM RGB-D layout")
-      ->required();
+  add_sequence_options(*command, arguments->sequence);
   command
       ->add_option("--out",
                    arguments->out,

@@ -17,10 +17,9 @@
 #include "stillmap/core/error.hpp"
 #include "stillmap/core/random.hpp"
 #include "stillmap/geometry/se3.hpp"
-#include "stillmap/io/trajectory_io.hpp"
 #include "stillmap/perception/detections/detections_io.hpp"
 #include "stillmap/sensor/camera_io.hpp"
-#include "stillmap/sensor/tum_sequence.hpp"
+#include "stillmap/sensor/sequence.hpp"
 #include "tests/relocation_trial.hpp"
 #include "tooling/eval/pose_at.hpp"
 
@@ -33,7 +32,7 @@ constexpr std::size_t kFramesAfter = 30;
 struct Place {
   std::string name;
   bool stranger = false;
-  TumSequence sequence;
+  Sequence sequence;
   std::optional<DetectionsFolder> detections;
   std::vector<std::optional<Eigen::Isometry3d>> T_truth_camera;  // per frame
 };
@@ -45,18 +44,18 @@ Place open_place(const std::string& text) {
   const std::string name = label.substr(0, label.find('@'));
   SequenceOptions options;
   if (name.size() < label.size()) options.camera = builtin_camera(label.substr(name.size() + 1));
-  Place place{name, false, TumSequence::open(text.substr(equals + 1), options), {}, {}};
+  Place place{name, false, Sequence::open(text.substr(equals + 1), options), {}, {}};
   constexpr std::string_view kStranger = "stranger.";
   if (name.starts_with(kStranger)) {
     place.stranger = true;
     place.name = name.substr(kStranger.size());
   }
   const CameraModel& camera = place.sequence.camera();
-  const std::filesystem::path found = place.sequence.folder() / "detections";
+  const std::filesystem::path found = place.sequence.path() / "detections";
   if (std::filesystem::exists(found)) {
     place.detections = DetectionsFolder::open(found, {camera.width_px, camera.height_px});
   }
-  const Trajectory truth = read_trajectory(place.sequence.groundtruth_file().value());
+  const Trajectory truth = place.sequence.groundtruth().value().poses;
   for (std::uint32_t i = 0; i < place.sequence.size(); ++i) {
     place.T_truth_camera.push_back(pose_at(truth, place.sequence.entry(FrameId(i)).stamp.seconds));
   }

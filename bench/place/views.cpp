@@ -6,8 +6,7 @@
 #include <numbers>
 
 #include "stillmap/core/error.hpp"
-#include "stillmap/io/trajectory_io.hpp"
-#include "stillmap/sensor/tum_sequence.hpp"
+#include "stillmap/sensor/sequence.hpp"
 #include "stillmap/slam/features/orb_extractor.hpp"
 
 namespace stillmap {
@@ -33,8 +32,8 @@ std::vector<View> read_views(const std::string& text, std::size_t gap) {
   const std::size_t at = label.find('@');
   SequenceOptions options;
   if (at != std::string::npos) options.camera = builtin_camera(label.substr(at + 1));
-  const TumSequence sequence = TumSequence::open(text.substr(equals + 1), options);
-  const Trajectory truth = read_trajectory(sequence.groundtruth_file().value());
+  const Sequence sequence = Sequence::open(text.substr(equals + 1), options);
+  const Trajectory truth = sequence.groundtruth().value().poses;
   OrbExtractor extractor({}, sequence.camera());
   std::vector<View> views;
   for (std::size_t i = 0; i < sequence.size(); i += gap) {

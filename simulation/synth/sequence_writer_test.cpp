@@ -15,7 +15,7 @@
 #include "stillmap/io/ply.hpp"
 #include "stillmap/io/trajectory_io.hpp"
 #include "stillmap/perception/detections/detections_io.hpp"
-#include "stillmap/sensor/tum_sequence.hpp"
+#include "stillmap/sensor/sequence.hpp"
 #include "tests/support/files.hpp"
 
 namespace stillmap {
@@ -41,7 +41,7 @@ TEST(WriteSequence, IsReadBackAsItWasRendered) {
   });
   EXPECT_EQ(steps, (std::vector<std::size_t>{1, 2, 3, 4}));
 
-  const TumSequence read = TumSequence::open(folder.path() / "a" / "b");
+  const Sequence read = Sequence::open(folder.path() / "a" / "b");
   ASSERT_EQ(read.size(), sequence.size());
   EXPECT_EQ(read.camera().fx, sequence.camera().fx);
   EXPECT_EQ(read.camera().cy, sequence.camera().cy);

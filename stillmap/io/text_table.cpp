@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "stillmap/core/error.hpp"
-#include "stillmap/io/atomic_file.hpp"
 #include "stillmap/io/stamp_text.hpp"
+#include "stillmap/io/text_file.hpp"
 
 namespace stillmap {
 namespace {
@@ -43,7 +43,7 @@ std::string quoted(std::string_view text) {
 }  // namespace
 
 TextTable TextTable::read(const std::filesystem::path& path, std::string_view layout) {
-  return {path.string(), read_file(path, kMaxTableBytes), layout};
+  return {path.string(), read_text(path, kMaxTableBytes), layout};
 }
 
 TextTable::TextTable(std::string path, std::string text, std::string_view layout)

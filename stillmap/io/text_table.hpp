@@ -18,7 +18,7 @@ struct TextRow {
 };
 
 /// A text file with columns separated by blanks, as in the TUM benchmark. `#` begins a comment
-/// line, empty lines are ignored, and lines may end with CR LF.
+/// line, empty lines are ignored, and lines may end with CR LF. The file is read by read_text().
 class TextTable {
  public:
   /// Throws Error when the file cannot be read, has more than 64 MiB or two million rows, or when

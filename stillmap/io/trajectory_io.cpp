@@ -2,6 +2,7 @@
 #include "stillmap/io/trajectory_io.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <iterator>
 
@@ -10,6 +11,7 @@
 #include "stillmap/core/error.hpp"
 #include "stillmap/geometry/se3.hpp"
 #include "stillmap/io/stamp_text.hpp"
+#include "stillmap/io/stamp_unit.hpp"
 #include "stillmap/io/text_table.hpp"
 
 namespace stillmap {
@@ -30,7 +32,17 @@ StampedPose parse_pose(const TextTable& table, const TextRow& row) {
     throw Error("{}: quaternion of length {:.3g}, expected about 1", table.place(row), q.norm());
   }
   q.normalize();
-  return {table.stamp(row, 0), make_pose(Eigen::Quaterniond(q[3], q[0], q[1], q[2]), t)};
+  Stamp stamp = table.stamp(row, 0);
+  stamp.seconds *= seconds_per(stamp_unit_by_size(stamp.seconds), 1);
+  return {std::move(stamp), make_pose(Eigen::Quaterniond(q[3], q[0], q[1], q[2]), t)};
+}
+
+bool has_gap(const TextRow& row) {
+  return std::ranges::any_of(row.columns, [](std::string_view text) {
+    double value = 0;
+    const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return status == std::errc() && end == text.data() + text.size() && !std::isfinite(value);
+  });
 }
 
 // Keeps the last of equal stamps.
@@ -46,16 +58,30 @@ void sort_by_stamp(Trajectory& poses) {
   poses = std::move(unique);
 }
 
+PartialTrajectory read_rows(const std::filesystem::path& path, bool gaps_allowed) {
+  const TextTable table = TextTable::read(path, "stamp tx ty tz qx qy qz qw");
+  PartialTrajectory read;
+  read.poses.reserve(table.rows().size());
+  for (const TextRow& row : table.rows()) {
+    if (gaps_allowed && has_gap(row)) {
+      ++read.rows_left_out;
+    } else {
+      read.poses.push_back(parse_pose(table, row));
+    }
+  }
+  if (read.poses.empty()) throw Error("{}: no poses in the file", path.string());
+  sort_by_stamp(read.poses);
+  return read;
+}
+
 }  // namespace
 
 Trajectory read_trajectory(const std::filesystem::path& path) {
-  const TextTable table = TextTable::read(path, "stamp tx ty tz qx qy qz qw");
-  Trajectory poses;
-  poses.reserve(table.rows().size());
-  for (const TextRow& row : table.rows()) poses.push_back(parse_pose(table, row));
-  if (poses.empty()) throw Error("{}: no poses in the file", path.string());
-  sort_by_stamp(poses);
-  return poses;
+  return read_rows(path, false).poses;
+}
+
+PartialTrajectory read_trajectory_with_gaps(const std::filesystem::path& path) {
+  return read_rows(path, true);
 }
 
 std::string format_trajectory(const Trajectory& trajectory) {

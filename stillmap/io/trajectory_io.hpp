@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 
@@ -13,10 +14,21 @@ namespace stillmap {
 ///
 /// Poses may be in any order and a stamp may occur twice, as both happen in published files (motion
 /// capture that repeats a stamp, a recorder that writes late). As in the benchmark's own scripts,
-/// the result is sorted by stamp and the last line of a stamp counts. Throws Error with file and
+/// the result is sorted by stamp and the last line of a stamp counts. Stamps of today's clock in
+/// milliseconds or smaller units become seconds and keep their text. Throws Error with file and
 /// line for another number of columns, a column that is no finite number, or a quaternion of length
 /// zero; and for a file without poses.
 [[nodiscard]] Trajectory read_trajectory(const std::filesystem::path& path);
+
+/// A trajectory some rows of whose file have no pose.
+struct PartialTrajectory {
+  Trajectory poses;
+  std::size_t rows_left_out = 0;  ///< those with a number that is not finite
+};
+
+/// read_trajectory() without the rows in which a number is not finite, as motion capture writes
+/// where it does not see its markers.
+[[nodiscard]] PartialTrajectory read_trajectory_with_gaps(const std::filesystem::path& path);
 
 /// A trajectory in the TUM format. Stamps keep their text; numbers have 7 decimals (0.1
 /// micrometres), so that the same poses give the same bytes.

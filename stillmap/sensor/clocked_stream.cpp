@@ -25,11 +25,10 @@ void ClockedStream::read_one() {
     begin_s_ = clock_.now_s();
     first_stamp_s_ = last_stamp_s_ = stamp_s;
   }
-  const double pause_s = stamp_s - last_stamp_s_;
-  last_stamp_s_ = stamp_s;
-  if (pause_s > kMaxPause_s) {
-    first_stamp_s_ += pause_s - kShortPause_s;
-    skipped_s_ += pause_s - kShortPause_s;
+  const double pause_s = stamp_s - std::exchange(last_stamp_s_, stamp_s);
+  if (pause_s > kLongestPauseS) {
+    first_stamp_s_ += pause_s - kCutPauseS;
+    skipped_s_ += pause_s - kCutPauseS;
   }
   coming_arrival_s_ = *begin_s_ + (stamp_s - first_stamp_s_) / speed_;
 }

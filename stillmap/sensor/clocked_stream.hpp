@@ -12,9 +12,9 @@
 namespace stillmap {
 
 /// Plays another stream as a camera would: each frame arrives at its time, and only the newest
-/// waits. A frame that is not fetched before the next one arrives is dropped. A pause of more than
-/// a minute between two frames, as where recordings were joined or stamps are not in seconds, takes
-/// one second.
+/// waits. A frame that is not fetched before the next one arrives is dropped. Nobody waits for a
+/// recording that was paused, or whose stamps are not in seconds: a pause of more than 10 s between
+/// two stamps becomes one of 1 s.
 class ClockedStream : public FrameStream {
  public:
   /// Time passes `speed` times as fast as the stamps say; it begins with the first call of next().
@@ -43,7 +43,7 @@ class ClockedStream : public FrameStream {
   void take(std::optional<StreamedFrame>& frame);
 
   static constexpr std::size_t kAhead = 4;
-  static constexpr double kMaxPause_s = 60, kShortPause_s = 1;
+  static constexpr double kLongestPauseS = 10, kCutPauseS = 1;
   FrameStream& stream_;
   double speed_;
   Clock& clock_;

@@ -19,7 +19,7 @@
 #include "stillmap/io/image_io.hpp"
 #include "stillmap/perception/detections/detections_io.hpp"
 #include "stillmap/perception/objects/frame_objects.hpp"
-#include "stillmap/sensor/tum_sequence.hpp"
+#include "stillmap/sensor/sequence.hpp"
 
 namespace stillmap {
 
@@ -45,7 +45,7 @@ class TruthSequence {
   };
 
   explicit TruthSequence(const std::filesystem::path& folder)
-      : sequence_(TumSequence::open(folder)),
+      : sequence_(Sequence::open(folder)),
         detections_(DetectionsFolder::open(
             folder / "detections", {sequence_.camera().width_px, sequence_.camera().height_px})) {
     std::ifstream file(folder / "truth" / "objects.json");
@@ -55,7 +55,7 @@ class TruthSequence {
     }
   }
 
-  [[nodiscard]] const TumSequence& sequence() const { return sequence_; }
+  [[nodiscard]] const Sequence& sequence() const { return sequence_; }
   [[nodiscard]] cv::Size image() const {
     return {sequence_.camera().width_px, sequence_.camera().height_px};
   }
@@ -67,7 +67,7 @@ class TruthSequence {
   [[nodiscard]] Frame truth(std::uint32_t index) const {
     const std::string& stamp = sequence_.entry(FrameId(index)).stamp.text;
     Frame frame;
-    frame.ids = read_mask(sequence_.folder() / "truth" / "masks" / (stamp + ".png"));
+    frame.ids = read_mask(sequence_.path() / "truth" / "masks" / (stamp + ".png"));
     for (std::size_t id = 1; id < 10; ++id) frame.dynamic[id] = true;
     for (const nlohmann::json& object : lines_.at(stamp)) {
       const int id = object.at("id");
@@ -82,7 +82,7 @@ class TruthSequence {
   }
 
  private:
-  TumSequence sequence_;
+  Sequence sequence_;
   DetectionsFolder detections_;
   std::map<std::string, nlohmann::json> lines_;
 };

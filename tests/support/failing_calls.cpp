@@ -123,7 +123,8 @@ int rename(const char* from, const char* to) noexcept {
   return fails(EIO) ? -1 : next<int (*)(const char*, const char*)>("rename")(from, to);
 }
 
-int renameat2(int from_folder, const char* from, int to_folder, const char* to, unsigned flags) noexcept {
+int renameat2(
+    int from_folder, const char* from, int to_folder, const char* to, unsigned flags) noexcept {
   if (fails(EIO)) return -1;
   return next<int (*)(int, const char*, int, const char*, unsigned)>("renameat2")(
       from_folder, from, to_folder, to, flags);

@@ -6,7 +6,7 @@
 
 #include "stillmap/core/error.hpp"
 #include "stillmap/sensor/clock.hpp"
-#include "stillmap/sensor/tum_folder.hpp"
+#include "stillmap/sensor/sequence_stream.hpp"
 #include "tests/support/files.hpp"
 #include "tests/support/plane_sequence.hpp"
 #include "tooling/pipeline/run_sequence.hpp"
@@ -28,11 +28,11 @@ class TestClock : public Clock {
 
 /// The wall of plane_sequence.hpp, 30 frames.
 inline constexpr std::size_t kWallFrames = 30;
-inline const TumSequence& wall_sequence() {
+inline const Sequence& wall_sequence() {
   static const TemporaryFolder kFolder;
-  static const TumSequence kSequence = [] {
+  static const Sequence kSequence = [] {
     write_plane_sequence(kFolder.path(), static_cast<int>(kWallFrames));
-    return TumSequence::open(kFolder.path());
+    return Sequence::open(kFolder.path());
   }();
   return kSequence;
 }

@@ -11,7 +11,7 @@
 #include "stillmap/io/image_io.hpp"
 #include "stillmap/io/ply.hpp"
 #include "stillmap/io/trajectory_io.hpp"
-#include "stillmap/sensor/tum_sequence.hpp"
+#include "stillmap/sensor/sequence.hpp"
 #include "tests/support/shared_data.hpp"
 #include "tooling/eval/map_quality.hpp"
 #include "tooling/eval/pose_at.hpp"
@@ -41,7 +41,7 @@ class StitchedMap : public testing::Test {
 
   // Every 10th frame, 1 cm voxels, depth up to 6 m.
   [[nodiscard]] PointCloud stitch(bool without_moved) const {
-    const TumSequence sequence = TumSequence::open(folder_, {.camera = builtin_camera("tum_fr3")});
+    const Sequence sequence = Sequence::open(folder_, {.camera = builtin_camera("tum_fr3")});
     const Trajectory truth = read_trajectory(folder_ / "groundtruth.txt");
     const cv::Mat2f rays = pixel_rays(sequence.camera());
     VoxelGrid grid(0.01);

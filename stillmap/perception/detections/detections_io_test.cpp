@@ -16,7 +16,7 @@
 #include "stillmap/io/image_io.hpp"
 #include "stillmap/io/stamp_text.hpp"
 #include "stillmap/perception/detections/class_names.hpp"
-#include "stillmap/sensor/tum_sequence.hpp"
+#include "stillmap/sensor/sequence.hpp"
 #include "tests/support/files.hpp"
 #include "tests/support/shared_data.hpp"
 
@@ -310,7 +310,7 @@ TEST(DetectionsWriter, SaysWhenItCannotWrite) {
 TEST(DetectionsFolder, ReadsThoseOfARealNetwork) {
   for (const char* name : {"twin_walking_xyz", "fr1_xyz_walkers"}) {
     STILLMAP_NEED_SHARED_DATA(name);
-    const TumSequence sequence = TumSequence::open(shared_data(name));
+    const Sequence sequence = Sequence::open(shared_data(name));
     const DetectionsFolder read =
         DetectionsFolder::open(shared_data(name) / "detections",
                                {sequence.camera().width_px, sequence.camera().height_px});

@@ -11,7 +11,6 @@
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 
-#include "stillmap/io/trajectory_io.hpp"
 #include "stillmap/perception/objects/object_tracker.hpp"
 #include "tests/support/dynamics_frames.hpp"
 #include "tests/support/shared_data.hpp"
@@ -205,8 +204,8 @@ SequenceFrame frame_with_objects(const TruthSequence& data, std::uint32_t index)
 
 /// The pixels that a mode covers in every ninth frame of a sequence, at true poses.
 Result run_on(const TruthSequence& data, const DynamicsMode& mode) {
-  const TumSequence& sequence = data.sequence();
-  const Trajectory poses = read_trajectory(*sequence.groundtruth_file());
+  const Sequence& sequence = data.sequence();
+  const Trajectory poses = sequence.groundtruth().value().poses;
   const DynamicObjects dynamics({}, sequence.camera(), mode);
   const std::uint32_t back = mode.jumps == JumpRule::kWarpedFrames ? 15 : 1;
   Result result;

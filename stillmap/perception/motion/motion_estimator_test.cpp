@@ -10,7 +10,6 @@
 #include <opencv2/core.hpp>
 
 #include "stillmap/geometry/se3.hpp"
-#include "stillmap/io/trajectory_io.hpp"
 #include "stillmap/perception/motion/dynamic_objects.hpp"
 #include "stillmap/perception/objects/object_tracker.hpp"
 #include "tests/support/dynamics_frames.hpp"
@@ -212,8 +211,8 @@ struct MotionScore {
 
 /// The motion states of all frames of a sequence, at true poses.
 MotionScore score_motion(const TruthSequence& data) {
-  const TumSequence& sequence = data.sequence();
-  const Trajectory poses = read_trajectory(*sequence.groundtruth_file());
+  const Sequence& sequence = data.sequence();
+  const Trajectory poses = sequence.groundtruth().value().poses;
   const DynamicObjects dynamics({}, sequence.camera(), dynamics_mode("mask"));
   MotionEstimator states({}, sequence.camera());
   ObjectTracker tracker({}, FillRule::kCausal);

@@ -4,17 +4,17 @@
 #include "stillmap/sensor/frame_selection.hpp"
 #include "stillmap/sensor/frame_stream.hpp"
 #include "stillmap/sensor/image_warnings.hpp"
-#include "stillmap/sensor/tum_sequence.hpp"
+#include "stillmap/sensor/sequence.hpp"
 
 namespace stillmap {
 
-/// Plays a sequence in the layout of the TUM RGB-D benchmark, or a part of it, as fast as next() is
+/// Plays a sequence, or a part of it, as fast as next() is
 /// called. The id of a frame is its frame number in the whole sequence.
-class TumFolder : public FrameStream {
+class SequenceStream : public FrameStream {
  public:
   /// Throws Error for a selection that begins after the last frame. A later end means the last
   /// frame.
-  explicit TumFolder(TumSequence sequence, const FrameSelection& selection = {});
+  explicit SequenceStream(Sequence sequence, const FrameSelection& selection = {});
 
   [[nodiscard]] const CameraModel& camera() const override { return sequence_.camera(); }
   [[nodiscard]] std::optional<std::size_t> size() const override;
@@ -22,7 +22,7 @@ class TumFolder : public FrameStream {
   [[nodiscard]] std::vector<std::string> warnings() const override;
 
  private:
-  TumSequence sequence_;
+  Sequence sequence_;
   FrameSelection selection_;
   std::size_t end_;
   std::size_t next_;

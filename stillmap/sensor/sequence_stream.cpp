@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "stillmap/sensor/tum_folder.hpp"
+#include "stillmap/sensor/sequence_stream.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -9,7 +9,7 @@
 
 namespace stillmap {
 
-TumFolder::TumFolder(TumSequence sequence, const FrameSelection& selection)
+SequenceStream::SequenceStream(Sequence sequence, const FrameSelection& selection)
     : sequence_(std::move(sequence)),
       selection_(selection),
       end_(std::min(selection.end.value_or(sequence_.size()), sequence_.size())),
@@ -18,16 +18,16 @@ TumFolder::TumFolder(TumSequence sequence, const FrameSelection& selection)
   if (selection.begin >= end_) {
     throw Error("the frames asked for begin at {}, but {} has only {} frames",
                 selection.begin,
-                sequence_.folder().string(),
+                sequence_.path().string(),
                 sequence_.size());
   }
 }
 
-std::optional<std::size_t> TumFolder::size() const {
+std::optional<std::size_t> SequenceStream::size() const {
   return (end_ - selection_.begin + selection_.stride - 1) / selection_.stride;
 }
 
-std::optional<StreamedFrame> TumFolder::next() {
+std::optional<StreamedFrame> SequenceStream::next() {
   if (next_ >= end_) return std::nullopt;
   const FrameId id(static_cast<std::uint32_t>(next_));
   next_ += selection_.stride;
@@ -40,7 +40,7 @@ std::optional<StreamedFrame> TumFolder::next() {
   }
 }
 
-std::vector<std::string> TumFolder::warnings() const {
+std::vector<std::string> SequenceStream::warnings() const {
   return image_warnings_.lines();
 }
 

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "stillmap/geometry/camera.hpp"
+#include "tooling/recordings/ros_message.hpp"
+
+namespace stillmap {
+
+/// The camera of a CameraInfo: K with the distortion of plumb_bob (or of a rational_polynomial
+/// whose further parameters are 0); of rectified images, which have none, P. Depth is in
+/// millimetres, as ROS has it. Throws Error, beginning with `place`, for another distortion and a
+/// camera that is not calibrated.
+[[nodiscard]] CameraModel camera_of_info(const RosCameraInfo& info,
+                                         bool rectified,
+                                         const std::string& place);
+
+}  // namespace stillmap
