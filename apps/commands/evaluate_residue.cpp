@@ -11,8 +11,10 @@
 
 #include "apps/commands.hpp"
 #include "apps/commands/evaluate.hpp"
+#include "apps/sensor_camera.hpp"
 #include "stillmap/core/error.hpp"
 #include "stillmap/sensor/camera_io.hpp"
+#include "stillmap/sensor/frame_reader.hpp"
 #include "stillmap/sensor/tum_sequence.hpp"
 #include "tooling/eval/map_files.hpp"
 #include "tooling/eval/map_quality.hpp"
@@ -91,9 +93,11 @@ Residue measure(const ResidueArguments& arguments) {
   if (!arguments.groundtruth.empty()) {
     posed = as_true(posed.map, sequence, read_trajectory_file(arguments.groundtruth), estimate);
   }
-  SeeThroughTest test(sequence.camera(), std::move(posed.map.positions));
+  const FrameReader frames(sensor_camera(sequence, {}, std::nullopt).camera);
+  SeeThroughTest test(frames.camera(), std::move(posed.map.positions));
   for (const auto& [frame, T_world_camera] : posed.T_world_camera) {
-    test.add(sequence.read(FrameId(frame))->depth, T_world_camera);
+    const FrameId id(frame);
+    test.add(frames.read(sequence.entry(id), id)->depth, T_world_camera);
   }
   return test.result();
 }

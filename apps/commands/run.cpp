@@ -9,8 +9,11 @@
 
 #include "apps/commands.hpp"
 #include "apps/image_names.hpp"
+#include "apps/interruption.hpp"
 #include "apps/option_value.hpp"
 #include "apps/run_progress.hpp"
+#include "apps/run_summary.hpp"
+#include "apps/sensor_camera.hpp"
 #include "apps/steady_clock.hpp"
 #include "apps/version.hpp"
 #include "stillmap/config/config_io.hpp"
@@ -19,7 +22,7 @@
 #include "stillmap/io/atomic_file.hpp"
 #include "stillmap/io/trajectory_io.hpp"
 #include "stillmap/sensor/camera_io.hpp"
-#include "stillmap/sensor/tum_folder.hpp"
+#include "stillmap/sensor/sequence_frames.hpp"
 #include "stillmap/session/session_io.hpp"
 #include "tooling/eval/ate.hpp"
 #include "tooling/eval/rpe.hpp"
@@ -27,13 +30,12 @@
 #include "tooling/pipeline/object_folder.hpp"
 #include "tooling/pipeline/run_folder.hpp"
 #include "tooling/pipeline/run_sequence.hpp"
-#include "tooling/report/time_summary.hpp"
-#include "tooling/report/tracking_gaps.hpp"
 
 namespace stillmap {
 namespace {
 
 constexpr int kLostForGood = 3;
+constexpr int kInterrupted = 4;
 
 struct RunArguments {
   std::string sequence;
@@ -41,6 +43,7 @@ struct RunArguments {
   std::string config_file;
   std::vector<std::string> settings;
   std::string camera;
+  std::optional<double> depth_factor;
   std::string segmenter;  // empty: auto where its networks are, else none
   std::string dynamics;   // empty: as configured
   std::string frames;
@@ -169,67 +172,6 @@ void evaluate_maps(SequenceRun& run, const SequenceTruth& truth) {
   }
 }
 
-std::string map_line(const RunReport& report) {
-  std::string text = fmt::format("map         {} points", report.map->size());
-  if (report.map_quality) text += fmt::format(", sa {:.3f}", report.map_quality->sa);
-  if (report.map_quality && report.map_quality->da) {
-    text += fmt::format(", da {:.3f}", *report.map_quality->da);
-  }
-  return text + (report.map_at_true_poses ? ", at true poses\n" : "\n");
-}
-
-std::string live_line(const RunReport& report) {
-  if (!report.live) return {};
-  const LiveReport& live = *report.live;
-  std::string text = fmt::format("live        {} of {} frames dropped, {} looked at",
-                                 live.dropped,
-                                 report.frames_total,
-                                 live.looked_at);
-  if (const std::optional<TimeSummary> latency = summarize_times(live.latency_ms)) {
-    text += fmt::format(
-        "; pose after {:.0f} ms (median), {:.0f} ms (95 %)", latency->median, latency->p95);
-  }
-  return text + "\n";
-}
-
-std::string gap_lines(const RunReport& report) {
-  constexpr std::size_t kMost = 5;
-  const std::vector<TrackingGap> gaps = tracking_gaps(report.lost, report.estimate);
-  std::string text;
-  for (std::size_t i = 0; i < std::min(gaps.size(), kMost); ++i) {
-    text += fmt::format("no pose     {}\n", gap_text(gaps[i]));
-  }
-  if (gaps.size() > kMost) text += fmt::format("            and {} more\n", gaps.size() - kMost);
-  return text;
-}
-
-std::string summary(const RunArguments& arguments,
-                    const RunReport& report,
-                    const std::string& objects_line) {
-  std::string text = fmt::format("objects     {}\ntracked     {} of {} frames, {} key frames\n",
-                                 objects_line,
-                                 report.frames_tracked,
-                                 report.frames_total,
-                                 report.keyframes.size());
-  text += gap_lines(report);
-  if (report.ate) {
-    text += fmt::format("ATE         {:.4f} m rmse over {} poses\n",
-                        report.ate->translation_m.rmse,
-                        report.ate->pairs.size());
-  }
-  if (!report.loops.empty()) {
-    text += fmt::format("loops       {} closed\n", report.loops.size());
-  }
-  text += live_line(report);
-  text += map_line(report);
-  text += fmt::format("time        {:.1f} s, {:.1f} frames a second\n",
-                      *report.wall_s,
-                      static_cast<double>(report.frames_total) / *report.wall_s);
-  text += fmt::format("report      {}\n",
-                      (std::filesystem::path(arguments.out) / "report.html").string());
-  return text;
-}
-
 // The map of a run that only localises is the one that it was given.
 void save_session(Session& session, const RunArguments& arguments, const std::string& settings) {
   if (arguments.localize_only) return;
@@ -270,7 +212,11 @@ int run(const RunArguments& arguments) {
                 sequence.folder().string());
   }
   const std::optional<SequenceTruth> truth = read_sequence_truth(arguments.sequence);
-  TumFolder frames(sequence, selected_frames(arguments));
+  const FrameSelection selection = selected_frames(arguments);
+  const SensorCamera sensor = sensor_camera(sequence, selection, arguments.depth_factor);
+  SequenceFrames all_frames(sequence, sensor.camera, selection);
+  InterruptibleStream frames(all_frames);
+  note_interruption();
   const ChosenSegmenter chosen =
       choose_segmenter(arguments, sequence, frames.camera(), dynamics_mode(config.dynamics.mode));
   RunOptions options;
@@ -290,10 +236,14 @@ int run(const RunArguments& arguments) {
     observers.push_back(&objects.emplace(
         arguments.objects_out, cv::Size(frames.camera().width_px, frames.camera().height_px)));
   }
+  if (!sensor.depth_unit.empty()) progress.on_warning(sensor.depth_unit);
   SequenceRun run = run_sequence(frames, config, std::move(options), observers);
 
   RunReport& report = run.report;
-  if (!chosen.warning.empty()) report.warnings.push_back(chosen.warning);
+  for (const std::string& warning : {chosen.warning, sensor.depth_unit, frames.interruption()}) {
+    if (!warning.empty()) report.warnings.push_back(warning);
+  }
+  if (frames.ended_early()) progress.on_warning(frames.interruption());
   report.version = kVersion;
   report.sequence = sequence.name();
   report.config_yaml = dump_yaml(list_fields(config));
@@ -305,7 +255,8 @@ int run(const RunArguments& arguments) {
       arguments.live ? std::optional(live_jsonl(run.live_record)) : std::nullopt;
   write_run_folder(arguments.out, run.result, report, {run.objects_jsonl, live_lines});
   save_session(run.session, arguments, report.config_yaml);
-  print_output(summary(arguments, report, chosen.line));
+  print_output(run_summary(report, arguments.out, chosen.line));
+  if (frames.ended_early()) return kInterrupted;
   return run.result.lost_at_end ? kLostForGood : 0;
 }
 
@@ -314,7 +265,13 @@ void add_inputs(CLI::App& command, RunArguments& arguments) {
   command.add_option(
       "--camera",
       arguments.camera,
-      "tum_fr1, tum_fr2, tum_fr3, bonn or a camera.yaml; instead of the sequence's own");
+      "tum_fr1, tum_fr2, tum_fr3, bonn or a camera file (also of ORB-SLAM, stella_vslam, ROS, "
+      "Open3D, RealSense); instead of the sequence's own");
+  command
+      .add_option("--depth-factor",
+                  arguments.depth_factor,
+                  "units of a depth image per metre, such as 1000; instead of the camera's")
+      ->check(CLI::PositiveNumber);
   command.add_option("--frames", arguments.frames, "A:B, only frames A to B - 1, counted from 0");
   command.add_option("--stride", arguments.stride, "take every N-th frame")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1000}));
@@ -391,8 +348,8 @@ void add_run_command(CLI::App& app, CommandResult& result) {
       "  stillmap run office --out result --segmenter detections:office/detections\n"
       "  stillmap run office --out live --live\n"
       "  stillmap run office --out again --live --replay live/live.jsonl\n"
-      "Exit code 3 says that tracking was lost for good: the results end before the sequence "
-      "does.");
+      "Exit code 3 says that tracking was lost for good, 4 that Ctrl-C or SIGTERM ended the run: "
+      "the\nresults are whole, but end before the sequence does. A second Ctrl-C ends at once.");
   command->callback([arguments, &result] { result.exit_code = run(*arguments); });
 }
 
