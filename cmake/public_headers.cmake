@@ -10,6 +10,7 @@ set(stillmap_public_headers
   stillmap/core/status.hpp
   stillmap/core/trajectory.hpp
   stillmap/geometry/camera.hpp
+  stillmap/geometry/depth_camera.hpp
   stillmap/perception/detections/detections.hpp
   stillmap/perception/objects/frame_objects.hpp
   stillmap/perception/objects/object_finder.hpp

@@ -11,6 +11,7 @@
 
 #include "apps/commands.hpp"
 #include "apps/commands/evaluate.hpp"
+#include "apps/sensor_camera.hpp"
 #include "apps/sequence_option.hpp"
 #include "stillmap/core/error.hpp"
 #include "stillmap/sensor/sequence.hpp"
@@ -86,7 +87,8 @@ Residue measure(const ResidueArguments& arguments) {
   const std::filesystem::path run = arguments.run;
   const TrajectoryFile estimate = read_trajectory_file((run / "trajectory.txt").string());
   PointCloud map = read_map(run / "map.ply");
-  const Sequence sequence = sequence_of(arguments);
+  Sequence sequence = sequence_of(arguments);
+  sequence.use_camera(sensor_camera(sequence, {}, std::nullopt).camera);
   // With ground truth, too, to check that the run is of this sequence.
   PosedSequence posed = as_estimated(std::move(map), sequence, estimate);
   if (!arguments.groundtruth.empty()) {

@@ -9,9 +9,11 @@
 #include "apps/command_inputs.hpp"
 #include "apps/commands.hpp"
 #include "apps/image_names.hpp"
+#include "apps/interruption.hpp"
 #include "apps/option_value.hpp"
 #include "apps/run_progress.hpp"
 #include "apps/run_summary.hpp"
+#include "apps/sensor_camera.hpp"
 #include "apps/sequence_option.hpp"
 #include "apps/steady_clock.hpp"
 #include "apps/version.hpp"
@@ -33,12 +35,14 @@ namespace stillmap {
 namespace {
 
 constexpr int kLostForGood = 3;
+constexpr int kInterrupted = 4;
 
 struct RunArguments {
   SequenceArguments sequence;
   std::string out;
   std::string config_file;
   std::vector<std::string> settings;
+  std::optional<double> depth_factor;
   std::string segmenter;  // empty: auto where its networks are, else none
   std::string dynamics;   // empty: as configured
   std::string frames;
@@ -213,14 +217,19 @@ int run(const RunArguments& arguments) {
     throw Error(
         "--localize-only needs a map to find the camera in: name a map.stillmap with --load");
   }
-  const Sequence sequence = open_sequence(arguments.sequence);
+  Sequence sequence = open_sequence(arguments.sequence);
   GroundTruth groundtruth = read_groundtruth(arguments, sequence);
   if (arguments.poses == "truth" && groundtruth.poses.empty()) {
     throw Error("--poses truth: {} has no ground truth; name one with --groundtruth",
                 sequence.path().string());
   }
   const std::optional<SequenceTruth> truth = read_sequence_truth(arguments.sequence.path);
-  SequenceStream frames(sequence, selected_frames(arguments));
+  const FrameSelection selection = selected_frames(arguments);
+  const SensorCamera sensor = sensor_camera(sequence, selection, arguments.depth_factor);
+  sequence.use_camera(sensor.camera);
+  SequenceStream all_frames(sequence, selection);
+  InterruptibleStream frames(all_frames);
+  note_interruption();
   const ChosenSegmenter chosen =
       choose_segmenter(arguments, sequence, frames.camera(), dynamics_mode(config.dynamics.mode));
   RunOptions options;
@@ -238,6 +247,7 @@ int run(const RunArguments& arguments) {
   if (truth || arguments.poses == "truth") options.groundtruth = true_poses;
   RunProgress progress(frames.size(), chosen.line);
   std::vector<std::string> early = sequence.remarks().warnings;
+  if (!sensor.depth_unit.empty()) early.push_back(sensor.depth_unit);
   early.insert(early.end(), groundtruth.warnings.begin(), groundtruth.warnings.end());
   for (const std::string& warning : early) progress.on_warning(warning);
   if (!chosen.warning.empty()) early.push_back(chosen.warning);
@@ -251,6 +261,10 @@ int run(const RunArguments& arguments) {
 
   RunReport& report = run.report;
   report.warnings.insert(report.warnings.begin(), early.begin(), early.end());
+  if (frames.ended_early()) {
+    report.warnings.push_back(frames.interruption());
+    progress.on_warning(frames.interruption());
+  }
   report.version = kVersion;
   report.sequence = sequence.name();
   report.config_yaml = dump_yaml(list_fields(config));
@@ -265,6 +279,7 @@ int run(const RunArguments& arguments) {
   const Session* const session = arguments.localize_only ? nullptr : &run.session;
   out->write(run.result, report, {run.objects_jsonl, live_lines}, session);
   print_output(run_summary(report, input_line(sequence), chosen.line, arguments.out));
+  if (frames.ended_early()) return kInterrupted;
   return run.result.lost_at_end ? kLostForGood : 0;
 }
 
@@ -273,7 +288,13 @@ void add_inputs(CLI::App& command, RunArguments& arguments) {
   command.add_option(
       "--camera",
       arguments.sequence.camera,
-      "tum_fr1, tum_fr2, tum_fr3, bonn or a camera.yaml; instead of the sequence's own");
+      "tum_fr1, tum_fr2, tum_fr3, bonn or a camera file (also of ORB-SLAM, stella_vslam, ROS, "
+      "Open3D, RealSense); instead of the sequence's own");
+  command
+      .add_option("--depth-factor",
+                  arguments.depth_factor,
+                  "units of a depth image per metre, such as 1000; instead of the camera's")
+      ->check(CLI::PositiveNumber);
   command.add_option("--frames", arguments.frames, "A:B, only frames A to B - 1, counted from 0");
   command.add_option("--stride", arguments.stride, "take every N-th frame")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1000}));
@@ -351,8 +372,8 @@ void add_run_command(CLI::App& app, CommandResult& result) {
       "  stillmap run office --out result --segmenter detections:office/detections\n"
       "  stillmap run office --out live --live\n"
       "  stillmap run office --out again --live --replay live/live.jsonl\n"
-      "Exit code 3 says that tracking was lost for good: the results end before the sequence "
-      "does.");
+      "Exit code 3 says that tracking was lost for good, 4 that Ctrl-C or SIGTERM ended the run: "
+      "the\nresults are whole, but end before the sequence does. A second Ctrl-C ends at once.");
   command->callback([arguments, &result] { result.exit_code = run(*arguments); });
 }
 

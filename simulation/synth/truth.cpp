@@ -59,6 +59,8 @@ std::string format_camera(const CameraModel& camera) {
                         camera.p1,
                         camera.p2,
                         camera.k3);
+    text += fmt::format(R"(,"k4":{},"k5":{},"k6":{})", camera.k4, camera.k5, camera.k6);
+    if (camera.lens == LensModel::kFisheye) text += R"(,"lens":"fisheye")";
   }
   text += fmt::format(R"(,"depth_factor":{})", camera.depth_factor);
   if (camera.readout_s != 0) text += fmt::format(R"(,"readout_s":{})", camera.readout_s);

@@ -12,6 +12,16 @@
 namespace stillmap {
 namespace {
 
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+// Another digit names another thing: k4 is no misspelt k1.
+std::size_t substitution_cost(char a, char b) {
+  if (a == b) return 0;
+  return is_digit(a) && is_digit(b) ? 2 : 1;
+}
+
 // Levenshtein distance, computed one row at a time.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
@@ -19,7 +29,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   for (std::size_t i = 0; i < a.size(); ++i) {
     std::size_t diagonal = row[0]++;
     for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t substitute = diagonal + (a[i] == b[j] ? 0 : 1);
+      const std::size_t substitute = diagonal + substitution_cost(a[i], b[j]);
       diagonal = row[j + 1];
       row[j + 1] = std::min({row[j] + 1, row[j + 1] + 1, substitute});
     }

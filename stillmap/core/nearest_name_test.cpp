@@ -17,6 +17,14 @@ TEST(NameHint, SuggestsACloseName) {
   EXPECT_EQ(name_hint("sead", kNames), "did you mean 'seed'?");
 }
 
+TEST(NameHint, TakesAnotherDigitForAnotherName) {
+  const std::vector<std::string> lens = {"fx", "k1", "k2"};
+  EXPECT_EQ(name_hint("k7", lens), "known: fx, k1, k2");
+  EXPECT_EQ(name_hint("k", lens), "did you mean 'k1'?");
+  EXPECT_EQ(name_hint("tum_f1", std::vector<std::string>{"tum_fr3", "tum_fr1"}),
+            "did you mean 'tum_fr1'?");
+}
+
 TEST(NameHint, ListsAllWhenNoneIsClose) {
   EXPECT_EQ(name_hint("zzzzzzzz", kNames), "known: tracking.features, cloud.voxel_size_m, seed");
   EXPECT_EQ(name_hint("", kNames), "known: tracking.features, cloud.voxel_size_m, seed");

@@ -6,10 +6,12 @@
 #include <cmath>
 #include <cstddef>
 #include <utility>
+#include <variant>
 
 #include "stillmap/concurrency/parallel.hpp"
 #include "stillmap/core/error.hpp"
 #include "stillmap/dense/point_groups.hpp"
+#include "stillmap/geometry/lens.hpp"
 
 namespace stillmap {
 namespace {
@@ -17,14 +19,16 @@ namespace {
 constexpr std::size_t kBatch = 256;
 constexpr float kNearest = 0.05F;
 
-/// The rays through the corners of the image and the middles of its sides.
+/// Of the rays through the corners of the image and the middles of its sides.
 double greatest_slope_squared(const CameraModel& camera) {
   double greatest = 0;
   for (const double x : {0.0, 0.5, 1.0}) {
     for (const double y : {0.0, 0.5, 1.0}) {
       const Eigen::Vector2d raw((camera.width_px - 1) * x, (camera.height_px - 1) * y);
-      greatest =
-          std::max(greatest, camera.unproject(camera.undistort(raw), 1.0).head<2>().squaredNorm());
+      const Eigen::Vector2d ideal = camera.undistort(raw);
+      // Beyond a fold there are no rays. A fish-eye that sees all in front of it has no bound.
+      if (camera.lens != LensModel::kFisheye && !camera.has_ray(ideal)) continue;
+      greatest = std::max(greatest, camera.unproject(ideal, 1.0).head<2>().squaredNorm());
     }
   }
   return greatest;
@@ -64,11 +68,7 @@ class Projector {
         fy_(static_cast<float>(camera.fy)),
         cx_(static_cast<float>(camera.cx + 0.5)),  // makes truncation round
         cy_(static_cast<float>(camera.cy + 0.5)),
-        k1_(static_cast<float>(camera.k1)),
-        k2_(static_cast<float>(camera.k2)),
-        k3_(static_cast<float>(camera.k3)),
-        p1_(static_cast<float>(camera.p1)),
-        p2_(static_cast<float>(camera.p2)),
+        lens_(lens_of(camera)),
         max_r2_(static_cast<float>(1.1 * greatest_slope_squared(camera))) {}
 
   /// Whether certainly none of the points is in the image.
@@ -80,6 +80,19 @@ class Projector {
   }
 
   void project(const Batch& batch, Projected& out) const {
+    std::visit([&](const auto& lens) { project_with(lens, batch, out); }, lens_);
+  }
+
+ private:
+  using Lens = std::variant<BrownConradyLens<float>, FisheyeLens<float>>;
+
+  static Lens lens_of(const CameraModel& camera) {
+    if (camera.lens == LensModel::kFisheye) return FisheyeLens<float>(camera);
+    return BrownConradyLens<float>(camera);
+  }
+
+  template <class SomeLens>
+  void project_with(const SomeLens lens, const Batch& batch, Projected& out) const {
     const float a = T_(0, 0), b = T_(0, 1), c = T_(0, 2), d = T_(0, 3);
     const float e = T_(1, 0), f = T_(1, 1), g = T_(1, 2), h = T_(1, 3);
     const float i = T_(2, 0), j = T_(2, 1), k = T_(2, 2), l = T_(2, 3);
@@ -90,19 +103,19 @@ class Projector {
       const float x = (a * px + b * py + c * pz + d) * inverse_z;
       const float y = (e * px + f * py + g * pz + h) * inverse_z;
       const float r2 = x * x + y * y;
-      const float radial = 1 + r2 * (k1_ + r2 * (k2_ + r2 * k3_));
+      const LensPoint<float> at = lens(x, y);
       // Far outside the image the distortion polynomial is meaningless and may lead back into the
       // image.
       const float far = r2 < max_r2_ ? 0.0F : -1e6F;
-      out.u[n] = fx_ * (x * radial + 2 * p1_ * x * y + p2_ * (r2 + 2 * x * x)) + cx_ + far;
-      out.v[n] = fy_ * (y * radial + p1_ * (r2 + 2 * y * y) + 2 * p2_ * x * y) + cy_;
+      out.u[n] = fx_ * at.x + cx_ + far;
+      out.v[n] = fy_ * at.y + cy_;
       out.z[n] = z;
     }
   }
 
- private:
   Eigen::Matrix<float, 3, 4> T_;
-  float fx_, fy_, cx_, cy_, k1_, k2_, k3_, p1_, p2_;
+  float fx_, fy_, cx_, cy_;
+  Lens lens_;
   float max_r2_;
 };
 

@@ -162,11 +162,7 @@ Sightings brute_force_sightings(const Eigen::Vector3f& point,
   return s;
 }
 
-TEST(FreeSpace, SightingsAgreeWithBruteForce) {
-  CameraModel c = camera();
-  c.k1 = 0.1;
-  c.k2 = 0.02;
-  c.p1 = 0.001;
+void expect_agreement_with_brute_force(const CameraModel& c) {
   std::mt19937 rng(3);
   std::uniform_real_distribution<double> unit(-1, 1);
   std::vector<RangeImage> ranges;
@@ -217,6 +213,27 @@ TEST(FreeSpace, SightingsAgreeWithBruteForce) {
       ASSERT_EQ(numbers(several[i]), numbers(all[i])) << i << " with " << threads << " threads";
     }
   }
+}
+
+TEST(FreeSpace, SightingsAgreeWithBruteForce) {
+  CameraModel c = camera();
+  c.k1 = 0.1;
+  c.k2 = 0.02;
+  c.p1 = 0.001;
+  expect_agreement_with_brute_force(c);
+}
+
+TEST(FreeSpace, SightingsOfWideLensesAgreeWithBruteForce) {
+  CameraModel rational = camera();
+  rational.k1 = 0.5, rational.k2 = 0.1, rational.k4 = 0.8, rational.k5 = 0.3, rational.k6 = 0.02;
+  expect_agreement_with_brute_force(rational);
+  CameraModel fisheye = camera();
+  fisheye.lens = LensModel::kFisheye;
+  fisheye.fx *= 0.6;
+  fisheye.fy *= 0.6;
+  fisheye.k1 = 0.02;
+  fisheye.k3 = -0.01;
+  expect_agreement_with_brute_force(fisheye);
 }
 
 TEST(FreeSpace, ADistortionThatFoldsBackShowsNothingFromOutside) {

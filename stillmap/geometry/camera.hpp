@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,7 +12,18 @@
 
 namespace stillmap {
 
-/// A pinhole camera with Brown-Conrady distortion (the five parameters of OpenCV).
+/// How a lens maps rays to raw pixels.
+enum class LensModel : std::uint8_t {
+  /// Radial and tangential distortion (Brown-Conrady), rational with k4 to k6, as in OpenCV's
+  /// calib3d; ROS calls it plumb_bob and rational_polynomial.
+  kBrownConrady,
+  /// Equidistant fish-eye (Kannala-Brandt) with k1 to k4, as in OpenCV's fisheye.
+  kFisheye,
+};
+
+struct DepthCamera;
+
+/// A camera: size, focal lengths, lens, and what its depth images are.
 ///
 /// Camera axes: x right, y down, z forward. A *raw* pixel is a position in the image; the *ideal*
 /// pixel is the position of the same ray without distortion (same fx, fy, cx, cy). Features are
@@ -31,9 +44,21 @@ struct CameraModel {
 
   double readout_s = 0;  ///< rolling shutter: time from the first row to the last; 0 = global
 
-  /// Whether any parameter of the distortion is not 0.
+  /// Distortion of wider lenses: k4 to k6 divide the radial factor; a fish-eye has k1 to k4.
+  /// @{
+  double k4 = 0, k5 = 0, k6 = 0;
+  /// @}
+  LensModel lens = LensModel::kBrownConrady;  ///< what k1 to k6, p1 and p2 mean
+  /// Whether `depth_factor` was given; else it is the default, and the depth images may tell
+  /// another (sensor/depth_unit.hpp).
+  bool depth_factor_given = true;
+  /// The camera of the depth images; null where they are registered to the color images.
+  std::shared_ptr<const DepthCamera> depth_camera = nullptr;
+
+  /// Whether raw and ideal pixels differ.
   [[nodiscard]] bool distorted() const {
-    return k1 != 0 || k2 != 0 || p1 != 0 || p2 != 0 || k3 != 0;
+    return lens == LensModel::kFisheye || k1 != 0 || k2 != 0 || p1 != 0 || p2 != 0 || k3 != 0 ||
+           k4 != 0 || k5 != 0 || k6 != 0;
   }
 
   /// The ideal pixel of a point in camera coordinates with z > 0.
@@ -50,8 +75,20 @@ struct CameraModel {
   /// The raw pixel of an ideal pixel.
   [[nodiscard]] Eigen::Vector2d distort(const Eigen::Vector2d& ideal_px) const;
 
-  /// The ideal pixel of a raw pixel: the inverse of distort(), to 1e-9 pixels inside the image.
+  /// The ideal pixel of a raw pixel: the inverse of distort(), to 1e-9 pixels where there is one.
+  /// No ray in front of the camera leads to some raw pixels of a fish-eye of 180 degrees, and to
+  /// those beyond the fold of a distortion that folds back: their ideal pixel is that of a ray in
+  /// their direction with the slope kSteepest.
   [[nodiscard]] Eigen::Vector2d undistort(const Eigen::Vector2d& raw_px) const;
+
+  /// The slope, as distance from the axis on the plane z = 1, that stands for no ray at all.
+  static constexpr double kSteepest = 1e4;
+
+  /// Whether a ray in front of the camera leads to the raw pixel of which undistort() made this
+  /// ideal one.
+  [[nodiscard]] bool has_ray(const Eigen::Vector2d& ideal_px) const {
+    return unproject(ideal_px, 1.0).head<2>().norm() < 0.5 * kSteepest;
+  }
 };
 
 /// The built-in camera `name`: tum_fr1, tum_fr2, tum_fr3 or bonn. Throws Error, with a hint at the
@@ -59,6 +96,9 @@ struct CameraModel {
 [[nodiscard]] CameraModel builtin_camera(std::string_view name);
 /// The names that builtin_camera() knows.
 [[nodiscard]] std::vector<std::string> builtin_camera_names();
+
+/// Whether two cameras have the same size and lens, bit by bit.
+[[nodiscard]] bool same_lens(const CameraModel& a, const CameraModel& b);
 
 /// The normalised ray (x/z, y/z) of every raw pixel, as an image of the camera's size.
 [[nodiscard]] cv::Mat2f pixel_rays(const CameraModel& camera);

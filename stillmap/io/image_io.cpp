@@ -18,6 +18,9 @@ namespace {
 // Enough for 8192 x 8192 pixels of 24 bits that do not compress at all.
 constexpr std::size_t kMaxImageFileBytes = std::size_t{256} << 20U;
 
+// What some drivers write where nothing was measured.
+constexpr std::uint16_t kSaturated = 65535;
+
 std::string read_image_file(const std::filesystem::path& path) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) {  // a pipe would make the reader wait
@@ -64,7 +67,9 @@ DepthImage read_depth(const std::filesystem::path& path, double depth_factor) {
   for (int v = 0; v < raw.rows; ++v) {
     const std::uint16_t* source = raw[v];
     float* target = metres[v];
-    for (int u = 0; u < raw.cols; ++u) target[u] = static_cast<float>(source[u]) / factor;
+    for (int u = 0; u < raw.cols; ++u) {
+      target[u] = source[u] == kSaturated ? 0.0F : static_cast<float>(source[u]) / factor;
+    }
   }
   return DepthImage(metres);
 }
@@ -103,7 +108,7 @@ std::string encode_depth_png(const DepthImage& depth, double depth_factor) {
   for (int v = 0; v < raw.rows; ++v) {
     for (int u = 0; u < raw.cols; ++u) {
       const double value = std::round(static_cast<double>(depth.mat(v, u)) * depth_factor);
-      const bool fits = value >= 0.0 && value <= 65535.0;  // false for NaN
+      const bool fits = value >= 0.0 && value < kSaturated;  // false for NaN
       raw(v, u) = fits ? static_cast<std::uint16_t>(value) : std::uint16_t{0};
     }
   }

@@ -40,7 +40,8 @@ struct ColorFile {
 /// read_color for the bytes of a file, such as one in an archive. Messages call it `name`.
 [[nodiscard]] ColorImage decode_color(std::string_view bytes, const std::string& name);
 
-/// Reads a 16-bit gray PNG. Metres are the stored value / depth_factor; 0 = missing stays 0.
+/// Reads a 16-bit gray PNG. Metres are the stored value / depth_factor; 0 and 65535 mean that
+/// nothing was measured, and become 0.
 [[nodiscard]] DepthImage read_depth(const std::filesystem::path& path, double depth_factor);
 
 /// Reads an 8-bit gray PNG whose pixels are numbers, such as ids of objects.
@@ -58,7 +59,7 @@ void check_mask_size(const cv::Mat1b& mask, cv::Size image, const std::filesyste
 [[nodiscard]] std::string encode_mask_png(const cv::Mat1b& mask);
 
 /// Encodes a 16-bit PNG of metres * depth_factor, rounded to the nearest. Missing depth (0,
-/// negative, not finite) and depth beyond the range of 16 bits become 0.
+/// negative, not finite) and depth from 65535 units on become 0.
 [[nodiscard]] std::string encode_depth_png(const DepthImage& depth, double depth_factor);
 
 }  // namespace stillmap

@@ -240,7 +240,9 @@ TEST(ReadDepth, DividesByTheFactorAndKeepsMissing) {
   const cv::Mat1f metres = read_depth(path, 5000).mat;
   ASSERT_EQ(metres.size(), raw.size());
   for (int i = 0; i < 6; ++i) {
-    EXPECT_EQ(metres(i / 3, i % 3), static_cast<float>(raw(i / 3, i % 3)) / 5000.0F);
+    const std::uint16_t stored = raw(i / 3, i % 3);
+    const float expected = stored == 65535 ? 0.0F : static_cast<float>(stored) / 5000.0F;
+    EXPECT_EQ(metres(i / 3, i % 3), expected);
   }
 }
 
@@ -272,9 +274,9 @@ TEST(ReadDepth, RefusesColourAndJpegAndTruncation) {
 
 TEST(EncodeDepthPng, RoundsAndDropsWhatHasNoValue) {
   const TemporaryFolder folder;
-  cv::Mat1f metres(1, 6);
+  cv::Mat1f metres(1, 7);
   metres << 1.23456F, -1.0F, std::numeric_limits<float>::quiet_NaN(),
-      std::numeric_limits<float>::infinity(), 14.0F, 13.107F;
+      std::numeric_limits<float>::infinity(), 14.0F, 13.107F, 13.1068F;
   const fs::path path = write(folder, "d", encode_depth_png(DepthImage(metres), 5000));
   const cv::Mat1f read = read_depth(path, 5000).mat;
   EXPECT_EQ(read(0, 0), 6173.0F / 5000.0F);
@@ -282,7 +284,8 @@ TEST(EncodeDepthPng, RoundsAndDropsWhatHasNoValue) {
   EXPECT_EQ(read(0, 2), 0.0F);
   EXPECT_EQ(read(0, 3), 0.0F);
   EXPECT_EQ(read(0, 4), 0.0F);  // 70000 does not fit
-  EXPECT_EQ(read(0, 5), 65535.0F / 5000.0F);
+  EXPECT_EQ(read(0, 5), 0.0F);  // 65535 would mean that nothing was measured
+  EXPECT_EQ(read(0, 6), 65534.0F / 5000.0F);
 }
 
 TEST(ReadMask, GivesBackIdsAndRefusesOtherKinds) {

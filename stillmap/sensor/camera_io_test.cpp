@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stillmap/sensor/camera_io.hpp"
 
+#include <memory>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "stillmap/geometry/depth_camera.hpp"
 #include "stillmap/io/atomic_file.hpp"
 #include "tests/support/files.hpp"
 
@@ -69,9 +72,87 @@ TEST(ReadCameraYaml, GivesBackWhatFormatWrote) {
   }
 }
 
+TEST(ReadCameraYaml, GivesBackWideLensesAndTheDepthCamera) {
+  CameraModel camera = builtin_camera("tum_fr3");
+  camera.k4 = 1.0 / 3;
+  camera.k6 = -1.0 / 7;
+  DepthCamera depth;
+  depth.camera.width_px = 512;
+  depth.camera.height_px = 424;
+  depth.camera.fx = depth.camera.fy = 366.1;
+  depth.camera.k1 = 0.1;
+  depth.camera.lens = LensModel::kFisheye;
+  depth.T_color_depth = Eigen::Translation3d(0.052, -1e-3, 1.0 / 3) *
+                        Eigen::AngleAxisd(0.3, Eigen::Vector3d(1, 2, 3).normalized());
+  camera.depth_camera = std::make_shared<DepthCamera>(depth);
+  const CameraModel read_back = read(format_camera_yaml(camera));
+  EXPECT_TRUE(same_lens(read_back, camera));
+  ASSERT_NE(read_back.depth_camera, nullptr);
+  EXPECT_TRUE(same_lens(read_back.depth_camera->camera, depth.camera));
+  EXPECT_EQ(read_back.depth_camera->T_color_depth.matrix(), depth.T_color_depth.matrix());
+  EXPECT_EQ(format_camera_yaml(read_back), format_camera_yaml(camera));
+}
+
+TEST(ReadCameraYaml, ReadsTheDepthCamera) {
+  const std::string depth = std::string(kGood) +
+                            "depth:\n  width: 160\n  height: 120\n  fx: 125\n  fy: 126\n"
+                            "  cx: 80\n  cy: 60\n  k1: 0.5\n";
+  EXPECT_TRUE(read(depth).depth_camera->T_color_depth.isApprox(Eigen::Isometry3d::Identity(), 0));
+  // A quarter turn about z takes x to y.
+  const CameraModel turned = read(depth +
+                                  "  rotation: [0, 0, 0.70710678, 0.70710678]\n"
+                                  "  translation: [0.025, 0, -0.001]\n");
+  const Eigen::Vector3d p = turned.depth_camera->T_color_depth * Eigen::Vector3d(1, 0, 0);
+  EXPECT_LT((p - Eigen::Vector3d(0.025, 1, -0.001)).norm(), 1e-9);
+  EXPECT_EQ(turned.depth_camera->camera.k1, 0.5);
+  const CameraModel by_rows = read(depth + "  rotation: [0, -1, 0, 1, 0, 0, 0, 0, 1]\n");
+  EXPECT_LT(
+      (by_rows.depth_camera->T_color_depth * Eigen::Vector3d(1, 0, 0) - Eigen::Vector3d(0, 1, 0))
+          .norm(),
+      1e-12);
+  EXPECT_THAT(error_for(depth + "  rotation: [0, 0, 0, 2]\n"),
+              AllOf(HasSubstr("camera.yaml:15"), HasSubstr("quaternion")));
+  EXPECT_THAT(error_for(depth + "  rotation: [1, 0, 0, 0, 1, 0, 0, 0, -1]\n"),
+              HasSubstr("depth.rotation"));
+  EXPECT_THAT(error_for(depth + "  translation: [1, 2]\n"), HasSubstr("2 numbers, expected 3"));
+  EXPECT_THAT(error_for(depth + "  fz: 2\n"), HasSubstr("camera.yaml:15: unknown key 'depth.fz'"));
+  EXPECT_THAT(error_for(std::string(kGood) + "depth:\n  width: 160\n"),
+              HasSubstr("missing depth.height, depth.fx, depth.fy, depth.cx, depth.cy"));
+}
+
+TEST(ReadCameraYaml, SaysWhetherADepthFactorWasGiven) {
+  EXPECT_FALSE(read(kGood).depth_factor_given);
+  EXPECT_TRUE(read(std::string(kGood) + "depth_factor: 1000\n").depth_factor_given);
+}
+
+TEST(ReadCameraYaml, ReadsTheLens) {
+  const CameraModel fish = read(std::string(kGood) + "lens: fisheye\nk4: 0.1\n");
+  EXPECT_EQ(fish.lens, LensModel::kFisheye);
+  EXPECT_EQ(fish.k4, 0.1);
+  EXPECT_THAT(error_for(std::string(kGood) + "lens: fish\n"), HasSubstr("camera.yaml:7: lens"));
+  EXPECT_THAT(error_for(std::string(kGood) + "lens: fisheye\np1: 0.1\n"), HasSubstr("k1 to k4"));
+}
+
+TEST(CameraByName, TakesAnyFileThatIsThere) {
+  const TemporaryFolder folder;
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path());
+  for (const char* name : {"cam.yml", "cam.yaml", "cam.json", "cam"}) {
+    write_file_atomically(folder.path() / name, kGood);
+    EXPECT_EQ(camera_by_name(name).fx, 250.5) << name;
+  }
+  write_file_atomically(folder.path() / "bonn", kGood);
+  EXPECT_EQ(camera_by_name("bonn").fx, builtin_camera("bonn").fx);
+  EXPECT_THAT(error_of([] { (void)camera_by_name("none.yml"); }), HasSubstr("none.yml"));
+  EXPECT_THAT(error_of([] { (void)camera_by_name("bon"); }), HasSubstr("did you mean 'bonn'?"));
+  std::filesystem::current_path(before);
+}
+
 TEST(ReadCameraYaml, RefusesAnUnknownKeyWithItsLineAndTheNearest) {
   EXPECT_THAT(error_for(std::string(kGood) + "depth_facto: 1000\n"),
               AllOf(HasSubstr("camera.yaml:7"), HasSubstr("did you mean 'depth_factor'?")));
+  EXPECT_THAT(error_for(std::string(kGood) + "k7: 1\n"),
+              AllOf(HasSubstr("unknown key 'k7': known: "), HasSubstr("k1, k2, p1, p2")));
 }
 
 TEST(ReadCameraYaml, RefusesValuesThatCannotBe) {

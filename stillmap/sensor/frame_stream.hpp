@@ -57,6 +57,10 @@ class FrameStream {
   /// known. May be called on any thread. For progress, and for the share of damaged frames.
   [[nodiscard]] virtual std::optional<std::size_t> size() const { return std::nullopt; }
 
+  /// Whether the end came before that of the recording, because somebody asked for it. May be
+  /// called on any thread.
+  [[nodiscard]] virtual bool ended_early() const { return false; }
+
   /// The next frame; waits for one that has not been taken yet. Nothing at the end. Called by one
   /// thread at a time. Throws Error for an image of the wrong kind or size, and for a sensor that
   /// has failed: after that there is no next frame.

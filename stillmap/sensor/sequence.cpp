@@ -79,7 +79,7 @@ Sequence Sequence::open(const fs::path& path, const SequenceOptions& options) {
   sequence.format_ = format.name;
   sequence.content_ = format.open(path, options.reading);
   STILLMAP_CHECK(!sequence.content_.entries.empty());
-  sequence.camera_ = find_camera(path, sequence.name_, options.camera, sequence.content_);
+  sequence.use_camera(find_camera(path, sequence.name_, options.camera, sequence.content_));
   return sequence;
 }
 
@@ -93,27 +93,13 @@ FramePtr Sequence::read(FrameId id) const {
 }
 
 FrameReading Sequence::read_with_warning(FrameId id) const {
-  const SequenceEntry& listed = entry(id);
-  const auto checked = [&](auto image, const fs::path& file) {
-    if (image.mat.cols == camera_.width_px && image.mat.rows == camera_.height_px) return image;
-    throw Error("{}: {}x{} pixels, expected {}x{} as camera '{}' has",
-                file.empty() ? path_.string() : file.string(),
-                image.mat.cols,
-                image.mat.rows,
-                camera_.width_px,
-                camera_.height_px,
-                camera_.name);
-  };
-  RgbdFrame frame;
-  frame.id = id;
-  frame.stamp = listed.stamp;
-  frame.depth_stamp_s = listed.depth_stamp_s;
-  ColorFile color = content_.images->color(id.index());
-  frame.color = checked(std::move(color.color), listed.color_file);
-  frame.depth =
-      checked(content_.images->depth(id.index(), camera_.depth_factor), listed.depth_file);
-  frame.gray = to_gray(frame.color);
-  return {std::make_shared<const RgbdFrame>(std::move(frame)), std::move(color.warning)};
+  STILLMAP_CHECK(id.index() < size());
+  return reader_.read(content_, id, path_);
+}
+
+DepthImage Sequence::stored_depth(FrameId id) const {
+  STILLMAP_CHECK(id.index() < size());
+  return content_.images->depth(id.index(), 1.0);
 }
 
 std::optional<GroundTruth> Sequence::groundtruth() const {

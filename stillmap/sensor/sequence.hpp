@@ -13,6 +13,7 @@
 #include "stillmap/core/ids.hpp"
 #include "stillmap/core/rgbd_frame.hpp"
 #include "stillmap/geometry/camera.hpp"
+#include "stillmap/sensor/frame_reader.hpp"
 #include "stillmap/sensor/sequence_content.hpp"
 #include "stillmap/sensor/sequence_formats.hpp"
 
@@ -29,11 +30,6 @@ struct SequenceOptions {
   std::string format = {};  ///< name of its format; empty: the one that it looks like
   ReadingOptions reading = {};
   std::span<const SequenceFormat> formats = folder_formats();  ///< to choose from
-};
-
-struct FrameReading {
-  FramePtr frame;       ///< not null
-  std::string warning;  ///< see ColorFile; empty if nothing is wrong
 };
 
 /// A recording of an RGB-D camera in one of the formats of docs/inputs.md: pairs of a colour and a
@@ -53,7 +49,9 @@ class Sequence {
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   /// The name of its format.
   [[nodiscard]] std::string_view format() const { return format_; }
-  [[nodiscard]] const CameraModel& camera() const { return camera_; }
+  [[nodiscard]] const CameraModel& camera() const { return reader_.camera(); }
+  /// Frames are those of another camera from now on.
+  void use_camera(const CameraModel& camera) { reader_ = FrameReader(camera); }
 
   /// The number of pairs, at least one; ids of frames count from 0.
   [[nodiscard]] std::size_t size() const { return content_.entries.size(); }
@@ -67,6 +65,10 @@ class Sequence {
   /// The same, with what is wrong with the files beside the pixels.
   [[nodiscard]] FrameReading read_with_warning(FrameId id) const;
 
+  /// The depth image of a pair in the units that are stored, as its own camera sees it. Throws as
+  /// read().
+  [[nodiscard]] DepthImage stored_depth(FrameId id) const;
+
   /// The recording's own ground truth; nothing where it has none.
   [[nodiscard]] std::optional<GroundTruth> groundtruth() const;
 
@@ -79,7 +81,7 @@ class Sequence {
   std::filesystem::path path_;
   std::string name_;
   std::string_view format_;
-  CameraModel camera_;
+  FrameReader reader_;
   SequenceContent content_;
 };
 

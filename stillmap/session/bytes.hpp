@@ -140,6 +140,7 @@ class ByteReader {
     if (left() > 0) throw Error("{}: {} bytes too many", place_, left());
   }
 
+  [[nodiscard]] bool at_end() const { return left() == 0; }
   [[nodiscard]] std::size_t size() const { return bytes_.size(); }
   [[nodiscard]] const std::string& place() const { return place_; }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -35,6 +36,8 @@ using DroppedKeyframes = std::vector<std::pair<KeyframeId, Anchor>>;
 
 [[nodiscard]] ByteWriter encode(const CameraModel& camera);
 [[nodiscard]] CameraModel decode_camera(ByteReader content);
+/// The version of a file with this camera: the oldest one that can describe its lens.
+[[nodiscard]] std::uint32_t version_for(const CameraModel& camera);
 
 [[nodiscard]] ByteWriter encode_text(const std::string& text);
 [[nodiscard]] std::string decode_text(ByteReader content);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stillmap/session/merge_sessions.hpp"
 
-#include <tuple>
-
 #include "stillmap/core/error.hpp"
 #include "stillmap/session/append.hpp"
 #include "stillmap/session/session_cloud.hpp"
@@ -13,14 +11,6 @@
 
 namespace stillmap {
 namespace {
-
-bool same_lens(const CameraModel& a, const CameraModel& b) {
-  const auto intrinsics = [](const CameraModel& c) {
-    return std::tuple(
-        c.width_px, c.height_px, c.fx, c.fy, c.cx, c.cy, c.k1, c.k2, c.p1, c.p2, c.k3);
-  };
-  return intrinsics(a) == intrinsics(b);
-}
 
 // Closes the loops between the key frames from `begin` on and those of `places`.
 std::size_t close_loops(Session& session,

@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include "stillmap/session/codec.hpp"
+#include "stillmap/session/sections.hpp"
 
 namespace stillmap {
 namespace {
@@ -19,6 +20,14 @@ constexpr std::array kCameraNumbers = {&CameraModel::fx,
                                        &CameraModel::k3,
                                        &CameraModel::depth_factor,
                                        &CameraModel::readout_s};
+
+// Only from version 3 on; before them stands the lens (u32).
+constexpr std::array kWideLensNumbers = {&CameraModel::k4, &CameraModel::k5, &CameraModel::k6};
+
+bool has_wide_lens(const CameraModel& camera) {
+  return camera.lens != LensModel::kBrownConrady || camera.k4 != 0 || camera.k5 != 0 ||
+         camera.k6 != 0;
+}
 
 // A cell is 16 bits: the range in units of 2 mm; the highest bit marks motion.
 static_assert(sizeof(RangeCell) == sizeof(std::uint16_t) &&
@@ -84,6 +93,10 @@ ByteWriter encode(const CameraModel& camera) {
   out.number(static_cast<std::int32_t>(camera.width_px));
   out.number(static_cast<std::int32_t>(camera.height_px));
   for (double CameraModel::*number : kCameraNumbers) out.number(camera.*number);
+  if (has_wide_lens(camera)) {
+    out.number(static_cast<std::uint32_t>(camera.lens));
+    for (double CameraModel::*number : kWideLensNumbers) out.number(camera.*number);
+  }
   return out;
 }
 
@@ -93,8 +106,20 @@ CameraModel decode_camera(ByteReader content) {
   camera.width_px = content.number<std::int32_t>();
   camera.height_px = content.number<std::int32_t>();
   for (double CameraModel::*number : kCameraNumbers) camera.*number = content.number<double>();
+  if (!content.at_end()) {
+    const auto lens = content.number<std::uint32_t>();
+    if (lens > static_cast<std::uint32_t>(LensModel::kFisheye)) {
+      throw Error("{}: invalid lens {}", content.place(), lens);
+    }
+    camera.lens = static_cast<LensModel>(lens);
+    for (double CameraModel::*number : kWideLensNumbers) camera.*number = content.number<double>();
+  }
   content.finish();
   return camera;
+}
+
+std::uint32_t version_for(const CameraModel& camera) {
+  return has_wide_lens(camera) ? kSessionVersion : kOldestSessionVersion;
 }
 
 ByteWriter encode_text(const std::string& text) {

@@ -41,7 +41,7 @@ void check_head(const ByteSource& source, const std::string& file) {
         kSessionVersion);
   }
   if (version == 0) throw Error("{}: of format 0, which there never was", file);
-  if (version < kSessionVersion) {
+  if (version < kOldestSessionVersion) {
     throw Error(
         "{}: written by an older stillmap (format {}; this one reads {}): make it again by a run "
         "with this version",
@@ -67,8 +67,8 @@ std::string session_head(std::uint32_t version) {
   return head + sum.bytes();
 }
 
-SectionWriter::SectionWriter(Sink sink) : sink_(std::move(sink)) {
-  sink_(session_head());
+SectionWriter::SectionWriter(Sink sink, std::uint32_t version) : sink_(std::move(sink)) {
+  sink_(session_head(version));
 }
 
 void SectionWriter::write(std::string_view tag,

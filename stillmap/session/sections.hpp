@@ -15,7 +15,9 @@ namespace stillmap {
 // layout.
 
 inline constexpr std::string_view kSessionMagic = "stillmap";
-inline constexpr std::uint32_t kSessionVersion = 2;
+inline constexpr std::uint32_t kSessionVersion = 3;
+/// The oldest version that is read. Files of cameras that it can describe are written in it.
+inline constexpr std::uint32_t kOldestSessionVersion = 2;
 inline constexpr std::size_t kSessionHeadSize = 16;  ///< magic, version, checksum
 inline constexpr std::size_t kSectionHeadSize = 12;  ///< tag, size of the content
 inline constexpr std::size_t kSectionExtraSize =
@@ -34,7 +36,8 @@ class SectionWriter {
  public:
   using Sink = std::function<void(std::string_view)>;
 
-  explicit SectionWriter(Sink sink);
+  /// Writes the head.
+  explicit SectionWriter(Sink sink, std::uint32_t version = kSessionVersion);
   /// Throws Error, with `place`, for a content of more than kMaxSectionSize.
   void write(std::string_view tag, const ByteWriter& content, const std::string& place);
   /// Writes the end. To be called once, last.

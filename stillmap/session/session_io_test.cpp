@@ -95,6 +95,25 @@ TEST(SessionIo, AFileIsTheSameAsBytes) {
   expect_same(read_session(path), session);
 }
 
+TEST(SessionIo, OnlyACameraThatVersion2CannotDescribeMakesVersion3) {
+  const auto version_of = [](const std::string& bytes) {
+    return ByteReader(bytes.substr(kSessionMagic.size(), 4), "").number<std::uint32_t>();
+  };
+  Session session = random_session(5);
+  const std::string plain = encode_session(session);
+  EXPECT_EQ(version_of(plain), 2U);
+  session.camera.k5 = 0.25;
+  const std::string rational = encode_session(session);
+  EXPECT_EQ(version_of(rational), 3U);
+  EXPECT_EQ(rational.size(), plain.size() + 4 + 3 * 8);
+  expect_same(decode_session(rational, "rational"), session);
+  session.camera.k5 = session.camera.p1 = session.camera.p2 = 0;
+  session.camera.lens = LensModel::kFisheye;
+  const std::string fisheye = encode_session(session);
+  EXPECT_EQ(version_of(fisheye), 3U);
+  expect_same(decode_session(fisheye, "fisheye"), session);
+}
+
 TEST(SessionIo, WithoutViewsTheyAreNotRead) {
   const TemporaryFolder folder;
   const std::filesystem::path path = folder.path() / "map.stillmap";

@@ -164,10 +164,14 @@ inline void expect_same(const CameraModel& a, const CameraModel& b) {
                                       &CameraModel::p1,
                                       &CameraModel::p2,
                                       &CameraModel::k3,
+                                      &CameraModel::k4,
+                                      &CameraModel::k5,
+                                      &CameraModel::k6,
                                       &CameraModel::depth_factor,
                                       &CameraModel::readout_s}) {
     EXPECT_EQ(a.*number, b.*number);
   }
+  EXPECT_EQ(a.lens, b.lens);
 }
 
 inline void expect_same(const StaticView& a, const StaticView& b) {

@@ -7,10 +7,12 @@
 #include "tooling/eval/pose_pairs.hpp"
 
 namespace stillmap {
+
 std::optional<AteResult> absolute_trajectory_error(const Trajectory& groundtruth,
-                                                   const Trajectory& estimate) {
+                                                   const Trajectory& estimate,
+                                                   double max_difference_s) {
   const std::vector<std::pair<std::size_t, std::size_t>> matches =
-      pair_poses(groundtruth, estimate);
+      pair_poses(groundtruth, estimate, max_difference_s);
   if (matches.size() < 3) return std::nullopt;
 
   std::vector<Eigen::Vector3d> truth, estimated;
@@ -28,6 +30,28 @@ std::optional<AteResult> absolute_trajectory_error(const Trajectory& groundtruth
   }
   result.translation_m = statistics(errors_m);
   return result;
+}
+
+std::optional<double> fitted_scale(const Trajectory& groundtruth,
+                                   const Trajectory& estimate,
+                                   double max_difference_s) {
+  // The best rotation is the same at any scale.
+  const std::optional<AteResult> rigid =
+      absolute_trajectory_error(groundtruth, estimate, max_difference_s);
+  if (!rigid) return std::nullopt;
+  Eigen::Vector3d truth_mean = Eigen::Vector3d::Zero(), mean = Eigen::Vector3d::Zero();
+  for (const AtePair& pair : rigid->pairs) {
+    truth_mean += pair.groundtruth / static_cast<double>(rigid->pairs.size());
+    mean += pair.estimate_aligned / static_cast<double>(rigid->pairs.size());
+  }
+  double common = 0, own = 0;
+  for (const AtePair& pair : rigid->pairs) {
+    const Eigen::Vector3d centered = pair.estimate_aligned - mean;
+    common += centered.dot(pair.groundtruth - truth_mean);
+    own += centered.squaredNorm();
+  }
+  if (!(own > 0 && common > 0)) return std::nullopt;
+  return common / own;
 }
 
 }  // namespace stillmap

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "stillmap/core/trajectory.hpp"
+#include "stillmap/sensor/associate.hpp"
 #include "tooling/eval/statistics.hpp"
 
 namespace stillmap {
@@ -27,10 +28,19 @@ struct AteResult {
 };
 
 /// The absolute trajectory error as the script of the TUM RGB-D benchmark computes it: positions
-/// are paired by stamps less than 0.02 s apart (see associate()), the estimate is aligned by the
-/// best rotation and translation (no scale), and the remaining distances are summarised. Nothing
-/// with fewer than three pairs, which do not determine the alignment.
-[[nodiscard]] std::optional<AteResult> absolute_trajectory_error(const Trajectory& groundtruth,
-                                                                 const Trajectory& estimate);
+/// are paired by stamps less than `max_difference_s` apart (see associate()), the estimate is
+/// aligned by the best rotation and translation (no scale), and the remaining distances are
+/// summarised. Nothing with fewer than three pairs, which do not determine the alignment.
+[[nodiscard]] std::optional<AteResult> absolute_trajectory_error(
+    const Trajectory& groundtruth,
+    const Trajectory& estimate,
+    double max_difference_s = kMaxStampDifferenceS);
+
+/// The scale of the estimate's positions with which the best rotation and translation leave the
+/// least squares of the absolute trajectory error (Umeyama 1991, Eq. 42). Nothing with fewer than
+/// three pairs, and for an estimate that does not move or moves the other way.
+[[nodiscard]] std::optional<double> fitted_scale(const Trajectory& groundtruth,
+                                                 const Trajectory& estimate,
+                                                 double max_difference_s = kMaxStampDifferenceS);
 
 }  // namespace stillmap

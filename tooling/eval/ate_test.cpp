@@ -53,6 +53,45 @@ TEST(AbsoluteTrajectoryError, LeavesTheResidualsThatNoMotionCanRemove) {
   EXPECT_NEAR(ate->translation_m.max, 0.2, 1e-12);
 }
 
+TEST(FittedScale, IsThatOfLeastSquares) {
+  const Eigen::Isometry3d T = make_pose(so3_exp(Eigen::Vector3d(0.4, -1.1, 2.0)), {5.0, -7.0, 1.0});
+  std::vector<Eigen::Vector3d> moved;
+  for (const Eigen::Vector3d& p : kLarger) moved.push_back(T * p);
+  const std::optional<double> scale =
+      fitted_scale(at_positions(kTruth, 10.0), at_positions(moved, 10.0));
+  ASSERT_TRUE(scale);
+  EXPECT_NEAR(*scale, (2 * 1.1 + 2 * 1.2) / (2 * 1.1 * 1.1 + 2 * 1.2 * 1.2), 1e-12);
+}
+
+TEST(FittedScale, HasTheLeastErrorOfAllScales) {
+  const std::vector<Eigen::Vector3d> truth = {{0, 0, 0}, {1, 0.2, 0}, {2, 1, 0.5}, {2, 2, 0.4}};
+  const std::vector<Eigen::Vector3d> estimate = {
+      {0.1, 0, 0}, {0.3, 0.2, 0}, {0.9, 0.6, 0.2}, {1.1, 1.2, 0.3}};
+  const auto rmse = [&](double scale) {
+    std::vector<Eigen::Vector3d> scaled;
+    for (const Eigen::Vector3d& p : estimate) scaled.push_back(scale * p);
+    return absolute_trajectory_error(at_positions(truth, 1), at_positions(scaled, 1))
+        ->translation_m.rmse;
+  };
+  double best = 0.5;
+  for (double scale = 0.5; scale < 4; scale += 0.001) {
+    if (rmse(scale) < rmse(best)) best = scale;
+  }
+  EXPECT_NEAR(*fitted_scale(at_positions(truth, 1), at_positions(estimate, 1)), best, 0.001);
+}
+
+TEST(FittedScale, NeedsMotion) {
+  const std::vector<Eigen::Vector3d> still(4, Eigen::Vector3d(1, 2, 3));
+  EXPECT_FALSE(fitted_scale(at_positions(kTruth, 1), at_positions(still, 1)));
+  EXPECT_FALSE(fitted_scale(at_positions(kTruth, 1), at_positions(kTruth, 9)));
+}
+
+TEST(AbsoluteTrajectoryError, TakesAnotherDifferenceOfStamps) {
+  const Trajectory truth = at_positions(kTruth, 10.0), late = at_positions(kTruth, 10.05);
+  EXPECT_FALSE(absolute_trajectory_error(truth, late));
+  EXPECT_EQ(absolute_trajectory_error(truth, late, 0.06)->pairs.size(), 4U);
+}
+
 TEST(AbsoluteTrajectoryError, CountsOnlyPosesWithGroundTruthNearInTime) {
   Trajectory truth = at_positions(kTruth, 10.0);
   Trajectory estimate = at_positions(kTruth, 10.0);

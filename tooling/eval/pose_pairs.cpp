@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tooling/eval/pose_pairs.hpp"
 
-#include "stillmap/sensor/associate.hpp"
-
 namespace stillmap {
 namespace {
 
@@ -16,8 +14,9 @@ std::vector<double> seconds_of(const Trajectory& trajectory) {
 }  // namespace
 
 std::vector<std::pair<std::size_t, std::size_t>> pair_poses(const Trajectory& groundtruth,
-                                                            const Trajectory& estimate) {
-  return associate(seconds_of(groundtruth), seconds_of(estimate), kMaxStampDifferenceS);
+                                                            const Trajectory& estimate,
+                                                            double max_difference_s) {
+  return associate(seconds_of(groundtruth), seconds_of(estimate), max_difference_s);
 }
 
 }  // namespace stillmap

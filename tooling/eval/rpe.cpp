@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <iterator>
 #include <numbers>
 #include <vector>
 
 #include "stillmap/core/error.hpp"
+#include "stillmap/geometry/se3.hpp"
 
 namespace stillmap {
 namespace {
@@ -58,6 +61,27 @@ class NearGroundtruth {
     return nearest.T_world_camera;
   }
 
+  /// The time from the nearest pose, where pose() gives one.
+  [[nodiscard]] std::optional<double> distance_s(double seconds) const {
+    const double distance_s =
+        std::abs(trajectory_[nearest_index(trajectory_, seconds)].stamp.seconds - seconds);
+    return distance_s > max_difference_s_ ? std::nullopt : std::optional(distance_s);
+  }
+
+  /// The pose between those before and after; none where these are far apart.
+  [[nodiscard]] std::optional<Eigen::Isometry3d> between(double seconds) const {
+    const auto stamp = [](const StampedPose& pose) { return pose.stamp.seconds; };
+    const auto after = std::ranges::lower_bound(trajectory_, seconds, {}, stamp);
+    if (after == trajectory_.end()) return std::nullopt;
+    if (stamp(*after) == seconds) return after->T_world_camera;
+    if (after == trajectory_.begin()) return std::nullopt;
+    const StampedPose& before = *std::prev(after);
+    const double gap_s = stamp(*after) - stamp(before);
+    if (gap_s > max_difference_s_) return std::nullopt;
+    return interpolate(
+        before.T_world_camera, after->T_world_camera, (seconds - stamp(before)) / gap_s);
+  }
+
  private:
   const Trajectory& trajectory_;
   double max_difference_s_;
@@ -86,6 +110,35 @@ std::optional<RpeResult> relative_pose_error(const Trajectory& groundtruth,
   }
   if (errors_m.size() < 2) return std::nullopt;
   return RpeResult{delta_s, errors_m.size(), statistics(errors_m), statistics(errors_deg)};
+}
+
+std::optional<RpeResult> interpolated_relative_pose_error(const Trajectory& groundtruth,
+                                                          const Trajectory& estimate,
+                                                          double delta_s) {
+  if (groundtruth.size() < 2) return std::nullopt;
+  const NearGroundtruth truth(groundtruth);
+  Trajectory truth_there, estimate_there;
+  for (const StampedPose& pose : estimate) {
+    const std::optional<Eigen::Isometry3d> T = truth.between(pose.stamp.seconds);
+    if (!T) continue;
+    truth_there.push_back({pose.stamp, *T});
+    estimate_there.push_back(pose);
+  }
+  return relative_pose_error(truth_there, estimate_there, delta_s);
+}
+
+double groundtruth_distance_s(const Trajectory& groundtruth, const Trajectory& estimate) {
+  if (groundtruth.size() < 2) return 0;
+  const NearGroundtruth truth(groundtruth);
+  std::vector<double> distances_s;
+  for (const StampedPose& pose : estimate) {
+    const std::optional<double> distance_s = truth.distance_s(pose.stamp.seconds);
+    if (distance_s) distances_s.push_back(*distance_s);
+  }
+  if (distances_s.empty()) return 0;
+  const std::size_t rank = (distances_s.size() - 1) * 95 / 100;
+  std::ranges::nth_element(distances_s, distances_s.begin() + static_cast<std::ptrdiff_t>(rank));
+  return distances_s[rank];
 }
 
 }  // namespace stillmap

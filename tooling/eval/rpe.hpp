@@ -29,4 +29,15 @@ struct RpeResult {
                                                            const Trajectory& estimate,
                                                            double delta_s = 1.0);
 
+/// The relative pose error against ground truth interpolated at the stamps of the estimate, for
+/// ground truth with few poses. Estimated poses before the first and after the last true pose, and
+/// those between true poses that are farther apart than twice their median interval, are left out.
+[[nodiscard]] std::optional<RpeResult> interpolated_relative_pose_error(
+    const Trajectory& groundtruth, const Trajectory& estimate, double delta_s = 1.0);
+
+/// How far in time the ground truth is from the poses of the estimate that relative_pose_error()
+/// compares with it: the 95 % quantile, seconds. 0 where it compares none.
+[[nodiscard]] double groundtruth_distance_s(const Trajectory& groundtruth,
+                                            const Trajectory& estimate);
+
 }  // namespace stillmap

@@ -65,6 +65,38 @@ TEST(RelativePoseError, LeavesOutPairsThatEndAtTheLastPose) {
   EXPECT_EQ(rpe->pairs, 32U);
 }
 
+// The estimate is the truth, with a pose every 0.13 s where the truth has one every 0.125 s.
+TEST(RelativePoseError, OfSparseGroundTruthIsThatOfTheTimeBetweenUnlessInterpolated) {
+  const Trajectory truth = five_seconds(drifting);
+  const Trajectory estimate = make_trajectory(38, 100.0, 0.13, drifting);
+  EXPECT_NEAR(groundtruth_distance_s(truth, estimate), 0.0625, 0.01);
+  EXPECT_EQ(groundtruth_distance_s(truth, truth), 0.0);
+  EXPECT_GT(relative_pose_error(truth, estimate)->translation_m.max, 1e-3);
+  const std::optional<RpeResult> interpolated = interpolated_relative_pose_error(truth, estimate);
+  ASSERT_TRUE(interpolated);
+  EXPECT_LT(interpolated->translation_m.max, 1e-12);
+  EXPECT_GT(interpolated->pairs, 25U);
+}
+
+TEST(RelativePoseError, InterpolatesNotOverAGap) {
+  Trajectory truth;
+  for (const StampedPose& pose : five_seconds(still)) {
+    const double seconds = pose.stamp.seconds - 100.0;
+    if (seconds <= 2.0 || seconds >= 3.5) truth.push_back(pose);
+  }
+  // Estimated poses between the true ones, 2 s to 3.5 s apart, have no truth.
+  Trajectory estimate;
+  for (const StampedPose& pose : five_seconds(drifting)) {
+    const double seconds = pose.stamp.seconds - 100.0;
+    if (seconds <= 2.0 || seconds >= 3.5) estimate.push_back(pose);
+  }
+  const auto with_gap = interpolated_relative_pose_error(truth, five_seconds(drifting));
+  const auto without = relative_pose_error(truth, estimate);
+  ASSERT_TRUE(with_gap && without);
+  EXPECT_EQ(with_gap->pairs, without->pairs);
+  EXPECT_EQ(with_gap->translation_m.rmse, without->translation_m.rmse);
+}
+
 TEST(RelativePoseError, LeavesOutPairsInAGapOfTheGroundTruth) {
   Trajectory truth;
   for (const StampedPose& pose : five_seconds(still)) {

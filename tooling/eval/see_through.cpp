@@ -22,7 +22,9 @@ Eigen::AlignedBox2d ideal_image(const CameraModel& camera) {
                                           Eigen::Vector2d(x, bottom),
                                           Eigen::Vector2d(-0.5, y),
                                           Eigen::Vector2d(right, y)}) {
-      box.extend(camera.undistort(raw_px));
+      const Eigen::Vector2d ideal_px = camera.undistort(raw_px);
+      // Beyond a fold there are no rays; a fish-eye may see all that is in front of it.
+      if (camera.lens == LensModel::kFisheye || camera.has_ray(ideal_px)) box.extend(ideal_px);
     }
   }
   return box;

@@ -10,6 +10,7 @@ std::optional<StreamedFrame> ReplayedStream::next() {
   const LiveStep& step = record_[next_++];
   std::optional<StreamedFrame> frame = stream_.next();
   for (; frame && id_of(*frame) < step.frame; frame = stream_.next()) ++dropped_;
+  if (!frame && stream_.ended_early()) return std::nullopt;
   if (!frame || id_of(*frame) != step.frame) {
     throw Error("{}:{}: frame {}, which this sequence lacks; is it the record of another?",
                 name_,

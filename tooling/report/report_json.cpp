@@ -22,6 +22,14 @@ Json optional_json(const std::optional<double>& value) {
   return value ? Json(*value) : Json();
 }
 
+Json distortion_json(const CameraModel& c) {
+  if (c.lens == LensModel::kFisheye) return {c.k1, c.k2, c.k3, c.k4};
+  if (c.k4 != 0 || c.k5 != 0 || c.k6 != 0) {
+    return {c.k1, c.k2, c.p1, c.p2, c.k3, c.k4, c.k5, c.k6};
+  }
+  return {c.k1, c.k2, c.p1, c.p2, c.k3};
+}
+
 Json camera_json(const CameraModel& camera) {
   return {{"name", camera.name},
           {"width", camera.width_px},
@@ -30,7 +38,8 @@ Json camera_json(const CameraModel& camera) {
           {"fy", camera.fy},
           {"cx", camera.cx},
           {"cy", camera.cy},
-          {"distortion", {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3}},
+          {"lens", camera.lens == LensModel::kFisheye ? "fisheye" : "brown_conrady"},
+          {"distortion", distortion_json(camera)},
           {"depth_factor", camera.depth_factor},
           {"readout_s", camera.readout_s}};
 }

@@ -43,6 +43,7 @@ TEST(ReportJson, KnownFigures) {
   EXPECT_EQ(j.at("version"), "1.2.3");
   EXPECT_EQ(j.at("sequence"), "office");
   EXPECT_EQ(j.at("camera").at("name"), "tum_fr1");
+  EXPECT_EQ(j.at("camera").at("lens"), "brown_conrady");
   EXPECT_EQ(j.at("camera").at("distortion"), (json{0.0, 0.0, 0.0, 0.0, 0.25}));
   EXPECT_EQ(j.at("frames").at("total"), 8);
   EXPECT_EQ(j.at("frames").at("tracked"), 6);

@@ -12,6 +12,7 @@
 
 #include "stillmap/core/error.hpp"
 #include "stillmap/core/vector_clones.hpp"
+#include "stillmap/geometry/lens.hpp"
 
 namespace stillmap {
 namespace {
@@ -168,18 +169,18 @@ HalfDepth DepthWarper::warp(const DepthImage& previous,
   return warped;
 }
 
-STILLMAP_VECTOR_CLONES
-void DepthWarper::project_row(const Eigen::Matrix<float, 3, 4>& T,
-                              const float* ray_x,
-                              const float* ray_y,
-                              const Row& row) const {
+// Inlined into the versions of project_row for several processors.
+template <class Lens>
+[[gnu::always_inline]] inline void DepthWarper::project_row_with(
+    const Lens lens,
+    const Eigen::Matrix<float, 3, 4>& T,
+    const float* ray_x,
+    const float* ray_y,
+    const Row& row) const {
   const auto fx = static_cast<float>(camera_.fx / 2), fy = static_cast<float>(camera_.fy / 2);
   // Adding a half makes truncation round to the nearest cell.
   const auto cx = static_cast<float>(camera_.cx / 2 + 0.5);
   const auto cy = static_cast<float>(camera_.cy / 2 + 0.5);
-  const auto k1 = static_cast<float>(camera_.k1), k2 = static_cast<float>(camera_.k2);
-  const auto k3 = static_cast<float>(camera_.k3);
-  const auto p1 = static_cast<float>(camera_.p1), p2 = static_cast<float>(camera_.p2);
   const float a = T(0, 0), b = T(0, 1), c = T(0, 2), d = T(0, 3);
   const float e = T(1, 0), f = T(1, 1), g = T(1, 2), h = T(1, 3);
   const float i = T(2, 0), j = T(2, 1), k = T(2, 2), l = T(2, 3);
@@ -191,16 +192,27 @@ void DepthWarper::project_row(const Eigen::Matrix<float, 3, 4>& T,
     const float depth = i * px + j * py + k * z + l;
     const float x = (a * px + b * py + c * z + d) / depth;
     const float y = (e * px + f * py + g * z + h) / depth;
-    const float r2 = x * x + y * y;
-    const float radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3));
-    const float u = fx * (x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x)) + cx;
-    const float v = fy * (y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y) + cy;
+    const LensPoint<float> at = lens(x, y);
+    const float u = fx * at.x + cx;
+    const float v = fy * at.y + cy;
     const bool inside = (u >= 0) & (v >= 0) & (u < columns) & (v < rows);
     const bool good = inside & (z > 0) & (depth > kNearest);
     const auto left = static_cast<std::int32_t>(good ? u : 0.0F);
     const auto top = static_cast<std::int32_t>(good ? v : 0.0F);
     row.cell[n] = good ? top * stride + left : none;
     row.z[n] = depth;
+  }
+}
+
+STILLMAP_VECTOR_CLONES
+void DepthWarper::project_row(const Eigen::Matrix<float, 3, 4>& T,
+                              const float* ray_x,
+                              const float* ray_y,
+                              const Row& row) const {
+  if (camera_.lens == LensModel::kFisheye) {
+    project_row_with(FisheyeLens<float>(camera_), T, ray_x, ray_y, row);
+  } else {
+    project_row_with(BrownConradyLens<float>(camera_), T, ray_x, ray_y, row);
   }
 }
 

@@ -93,6 +93,12 @@ class DepthWarper {
                    const float* ray_x,
                    const float* ray_y,
                    const Row& row) const;
+  template <class Lens>
+  void project_row_with(Lens lens,
+                        const Eigen::Matrix<float, 3, 4>& T,
+                        const float* ray_x,
+                        const float* ray_y,
+                        const Row& row) const;
 
   CameraModel camera_;
   cv::Mat1f ray_x_, ray_y_;  // of the cells, x / z and y / z

@@ -19,6 +19,17 @@ CameraModel small_camera(bool distorted) {
   return camera;
 }
 
+CameraModel small_fisheye() {
+  CameraModel camera = small_camera(false);
+  camera.name = "fisheye";
+  camera.fx *= 0.7;
+  camera.fy *= 0.7;
+  camera.lens = LensModel::kFisheye;
+  camera.k1 = 0.02;
+  camera.k2 = -0.01;
+  return camera;
+}
+
 /// Two walls one behind the other, seen from a camera: the near one, at z = 2 m in the world,
 /// reaches from x = -0.5 m to x = 0.3 m and is 1 m high; the far one, at 4 m, is infinite.
 /// Optionally a third at 2 m, from x = 0.3 m on and 0.1 m wide.
@@ -63,8 +74,7 @@ TEST(DepthJumps, OfEquation6ByHand) {
 }
 
 TEST(DepthWarper, PutsPointsWhereTheCameraSeesThem) {
-  for (const bool distorted : {false, true}) {
-    const CameraModel camera = small_camera(distorted);
+  for (const CameraModel& camera : {small_camera(false), small_camera(true), small_fisheye()}) {
     const Eigen::Isometry3d T_world_current = moved();
     const DepthImage before = see(camera, Eigen::Isometry3d::Identity(), false);
     const DepthImage now = see(camera, T_world_current, false);
@@ -79,8 +89,8 @@ TEST(DepthWarper, PutsPointsWhereTheCameraSeesThem) {
         close += std::abs(warped.mat(v, u) - now.mat(2 * v, 2 * u)) < 0.01F ? 1 : 0;
       }
     }
-    EXPECT_GT(known, 0.85 * 160 * 120) << distorted;
-    EXPECT_GT(close, 0.97 * known) << distorted;
+    EXPECT_GT(known, 0.85 * 160 * 120) << camera.name;
+    EXPECT_GT(close, 0.97 * known) << camera.name;
   }
 }
 
@@ -96,8 +106,7 @@ TEST(DepthWarper, TheNearestOfSeveralPointsWins) {
 }
 
 TEST(DepthJumps, AStaticSceneHasNoneWhereTheMotionIsKnown) {
-  for (const bool distorted : {false, true}) {
-    const CameraModel camera = small_camera(distorted);
+  for (const CameraModel& camera : {small_camera(false), small_camera(true), small_fisheye()}) {
     const DepthImage before = see(camera, Eigen::Isometry3d::Identity(), false);
     const DepthImage now = see(camera, moved(), false);
     DepthJumpConfig config;

@@ -111,8 +111,10 @@ std::optional<MotionEstimator::Position> MotionEstimator::position_of(
   const std::optional<Eigen::Vector2d> pixel =
       middle_pixel(view.objects.mask, object.detection.id, area, view.depth, *state.depths);
   if (!pixel) return std::nullopt;
+  const Eigen::Vector2d ideal_px = camera_.undistort(*pixel);
+  if (!camera_.has_ray(ideal_px)) return std::nullopt;
   const auto z = static_cast<double>(state.median_depth_m);
-  const Eigen::Vector3d p_camera = camera_.unproject(camera_.undistort(*pixel), z);
+  const Eigen::Vector3d p_camera = camera_.unproject(ideal_px, z);
   return Position{view.objects.stamp.seconds,
                   view.T_world_camera * p_camera,
                   config_.depth_noise_per_m * z * z,

@@ -10,6 +10,7 @@
 #include "stillmap/core/error.hpp"
 #include "stillmap/slam/features/brief.hpp"
 #include "stillmap/slam/features/fast_corners.hpp"
+#include "stillmap/slam/features/feature_slope.hpp"
 #include "stillmap/slam/features/patch_blur.hpp"
 #include "stillmap/slam/features/spread.hpp"
 
@@ -118,9 +119,13 @@ void OrbExtractor::append(std::size_t number,
   const float scale_y = static_cast<float>(camera_.height_px) / static_cast<float>(image.rows);
   for (const cv::KeyPoint& corner : corners) {
     const cv::Point at(static_cast<int>(corner.pt.x), static_cast<int>(corner.pt.y));
+    const Eigen::Vector2f raw((corner.pt.x + 0.5F) * scale_x - 0.5F,
+                              (corner.pt.y + 0.5F) * scale_y - 0.5F);
+    const Eigen::Vector2d ideal = camera_.undistort(raw.cast<double>());
+    if (camera_.unproject(ideal, 1.0).head<2>().norm() > kSteepestFeature) continue;
     const float angle_deg = patch_orientation_deg(image, at);
-    features.raw_px.emplace_back((corner.pt.x + 0.5F) * scale_x - 0.5F,
-                                 (corner.pt.y + 0.5F) * scale_y - 0.5F);
+    features.raw_px.push_back(raw);
+    features.ideal_px.push_back(ideal.cast<float>());
     features.level.push_back(static_cast<std::uint8_t>(number));
     features.angle_deg.push_back(angle_deg);
     features.descriptors.push_back(rotated_brief(level.blurred, at, angle_deg));
@@ -128,10 +133,8 @@ void OrbExtractor::append(std::size_t number,
 }
 
 void OrbExtractor::place_in_space(const DepthImage& depth, Features& features) const {
-  features.ideal_px.reserve(features.raw_px.size());
   features.sensor_depth_m.reserve(features.raw_px.size());
   for (const Eigen::Vector2f& raw : features.raw_px) {
-    features.ideal_px.push_back(camera_.undistort(raw.cast<double>()).cast<float>());
     const int u = std::min(cvRound(raw.x()), depth.mat.cols - 1);
     const int v = std::min(cvRound(raw.y()), depth.mat.rows - 1);
     features.sensor_depth_m.push_back(depth.mat(v, u));

@@ -173,6 +173,25 @@ TEST(OrbExtractor, UndistortsAndIndexesTheIdealPixels) {
   EXPECT_EQ(f.px, f.ideal_px);
 }
 
+TEST(OrbExtractor, HasNoFeaturesAtTheRimOfAVeryWideFisheye) {
+  const GrayImage image = textured_image(640, 480, 10);
+  CameraModel camera = builtin_camera("tum_fr3");
+  camera.lens = LensModel::kFisheye;
+  camera.fx = camera.fy = 210;  // 87 degrees from the axis at the sides
+  const Features f = OrbExtractor({}, camera).extract(image, no_depth(image));
+  double widest = 0;
+  for (std::size_t i = 0; i < f.size(); ++i) {
+    const Eigen::Vector2d from_axis(f.raw_px[i].x() - camera.cx, f.raw_px[i].y() - camera.cy);
+    const double angle = from_axis.norm() / 210;  // an equidistant lens without distortion
+    widest = std::max(widest, angle);
+    const Eigen::Vector2d slope = camera.unproject(f.ideal_px[i].cast<double>(), 1).head<2>();
+    EXPECT_NEAR(slope.norm(), std::tan(angle), 1e-3);
+  }
+  EXPECT_GT(f.size(), 300U);
+  EXPECT_LT(widest, 70.1 * 3.14159265 / 180);
+  EXPECT_GT(widest, 65 * 3.14159265 / 180);
+}
+
 // The best match of a feature among those of another image near where the image's motion puts it.
 std::optional<std::uint32_t> match_at(const Features& f,
                                       const Descriptor& descriptor,

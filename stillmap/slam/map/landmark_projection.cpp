@@ -2,7 +2,9 @@
 #include "stillmap/slam/map/landmark_projection.hpp"
 
 #include <algorithm>
+#include <optional>
 
+#include "stillmap/slam/features/feature_slope.hpp"
 #include "stillmap/slam/optim/reprojection.hpp"
 
 namespace stillmap {
@@ -19,12 +21,28 @@ int predict_level(const std::vector<float>& level_scales,
       std::min<std::ptrdiff_t>(at - level_scales.begin(), std::ssize(level_scales) - 1));
 }
 
+// A wide lens shows much more than the same image without distortion does.
+bool wide(const CameraModel& camera) {
+  return camera.lens == LensModel::kFisheye || camera.k4 != 0 || camera.k5 != 0 || camera.k6 != 0;
+}
+
+// The raw pixel of a feature at an ideal one; none where the lens has no features, or folds back.
+std::optional<Eigen::Vector2d> wide_pixel(const CameraModel& camera, const Eigen::Vector2d& ideal) {
+  if (camera.unproject(ideal, 1.0).head<2>().norm() > kSteepestFeature) return std::nullopt;
+  const Eigen::Vector2d raw = camera.distort(ideal);
+  const bool folded = (camera.undistort(raw) - ideal).norm() > 1.0;
+  return folded ? std::nullopt : std::optional(raw);
+}
+
 }  // namespace
 
 bool in_view(const CameraModel& camera, const Eigen::Vector3d& p_camera) {
   if (p_camera.z() < kMinPointDepth) return false;
-  const Eigen::Vector2d px = camera.project(p_camera);
-  return px.x() >= 0 && px.x() < camera.width_px && px.y() >= 0 && px.y() < camera.height_px;
+  const Eigen::Vector2d ideal = camera.project(p_camera);
+  const std::optional<Eigen::Vector2d> px =
+      wide(camera) ? wide_pixel(camera, ideal) : std::optional(ideal);
+  return px && px->x() >= 0 && px->x() < camera.width_px && px->y() >= 0 &&
+         px->y() < camera.height_px;
 }
 
 float inverse_depth_gate(double inverse_depth) {

@@ -99,5 +99,26 @@ TEST(ProjectLandmark, RejectsWhatIsOutOfView) {
   EXPECT_FALSE(in_view(camera, {0, -241.1 / 520.0, 1}));
 }
 
+TEST(InView, OfAWideLensIsWhatItShows) {
+  CameraModel fisheye{"fisheye", 640, 480, 200, 200, 320, 240};
+  fisheye.lens = LensModel::kFisheye;
+  const auto at = [](double angle_deg) {
+    const double angle = angle_deg * std::numbers::pi / 180;
+    return Eigen::Vector3d(std::sin(angle), 0, std::cos(angle));
+  };
+  EXPECT_TRUE(in_view(fisheye, at(60)));  // at 200 * 1.047 = 209 px from the middle
+  EXPECT_TRUE(in_view(fisheye, at(-69)));
+  EXPECT_FALSE(in_view(fisheye, at(71)));  // it has no features there
+  fisheye.width_px = 400;
+  fisheye.cx = 200;
+  EXPECT_FALSE(in_view(fisheye, at(60)));
+  // r (1 - 0.3 r^2) / (1 + 1e-9 r^2) is 0 again at r = 1.83.
+  CameraModel folding{"folding", 640, 480, 300, 300, 320, 240};
+  folding.k1 = -0.3;
+  folding.k4 = 1e-9;
+  EXPECT_TRUE(in_view(folding, {0.5, 0, 1}));
+  EXPECT_FALSE(in_view(folding, {1.83, 0, 1}));
+}
+
 }  // namespace
 }  // namespace stillmap

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+
+#include "stillmap/core/trajectory.hpp"
+
+namespace stillmap {
+
+/// A trajectory as a file has it.
+struct ReadTrajectory {
+  Trajectory poses;
+  std::size_t equal_stamps = 0;  ///< poses that a later line with the same stamp replaced
+};
+
+/// Reads a trajectory in one of three formats, told apart by the first row:
+/// - TUM: see read_trajectory();
+/// - EuRoC: `stamp,x,y,z,qw,qx,qy,qz[,...]`, commas between the columns, the stamp in nanoseconds;
+/// - KITTI: the 12 numbers of a pose's first three rows. It has no stamps: row n, counted from 0,
+///   is of n / 10 s, as KITTI records ten frames a second.
+///
+/// Throws Error with file and line for rows of another form, and for a file without poses.
+[[nodiscard]] ReadTrajectory read_any_trajectory(const std::filesystem::path& path);
+
+}  // namespace stillmap
