@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # From a fresh clone on Debian 12: `make demo` or `make test`, in either order. The work is CMake's;
 # this only installs what is missing and names the usual steps.
-.PHONY: setup models configure build program test test-fast demo api bench format tidy clean
+.PHONY: setup models configure build program wheel test test-fast demo api bench format tidy clean
 .DEFAULT_GOAL := build
 
 program := build/release/bin/stillmap
@@ -31,6 +31,11 @@ build: configure
 # The program and what it links, no test.
 program: configure
 	@cmake --build --preset release --parallel --target stillmap_program
+
+# The Python package as a wheel in build/wheel (docs/python.md).
+wheel: configure
+	@/usr/bin/python3 -m pip wheel --quiet --no-build-isolation --no-deps --wheel-dir build/wheel .
+	@ls build/wheel/*.whl
 
 test: build
 	@ctest --preset release --parallel "$$(nproc)" --no-tests=error

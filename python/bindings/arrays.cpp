@@ -3,9 +3,9 @@
 
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <type_traits>
 
+#include "python/bindings/pixels.hpp"
 #include "stillmap/core/error.hpp"
 #include "stillmap/perception/detections/detections_line.hpp"
 
@@ -49,36 +49,6 @@ cv::Mat shared_or_copied(const py::array& array, int type, LentArrays& lent) {
   return lent.lend(py::array_t<T, py::array::c_style | py::array::forcecast>(array), type);
 }
 
-bool all_measured_or_zero(const cv::Mat1f& metres) {
-  constexpr float kLargest = std::numeric_limits<float>::max();
-  int odd = 0;
-  for (int v = 0; v < metres.rows; ++v) {
-    const float* row = metres[v];
-    for (int u = 0; u < metres.cols; ++u) odd += row[u] >= 0.0F && row[u] <= kLargest ? 0 : 1;
-  }
-  return odd == 0;
-}
-
-cv::Mat1f without_odd_depths(const cv::Mat1f& metres) {
-  cv::Mat1f result = metres.clone();
-  for (float& z : result) {
-    if (!(z > 0.0F) || !std::isfinite(z)) z = 0.0F;
-  }
-  return result;
-}
-
-// As read_depth() has it.
-cv::Mat1f in_metres(const cv::Mat1w& raw, double depth_factor) {
-  cv::Mat1f metres(raw.size());
-  const auto factor = static_cast<float>(depth_factor);
-  for (int v = 0; v < raw.rows; ++v) {
-    const std::uint16_t* source = raw[v];
-    float* target = metres[v];
-    for (int u = 0; u < raw.cols; ++u) target[u] = static_cast<float>(source[u]) / factor;
-  }
-  return metres;
-}
-
 }  // namespace
 
 std::string description_of(const py::object& object) {
@@ -119,7 +89,7 @@ DepthImage depth_image(const py::object& object, double depth_factor, LentArrays
     return DepthImage(in_metres(units, depth_factor));
   }
   const cv::Mat1f metres(shared_or_copied<float>(array, CV_32FC1, lent));
-  return DepthImage(all_measured_or_zero(metres) ? metres : without_odd_depths(metres));
+  return DepthImage(with_missing_as_zero(metres));
 }
 
 Stamp stamp_of(const py::object& value) {

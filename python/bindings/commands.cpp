@@ -31,13 +31,13 @@ py::object stream(const char* name) {
   return py::module_::import("sys").attr(name);
 }
 
-// What cannot be shown must not end a command.
+// What cannot be shown must not end a command; Ctrl-C meanwhile must.
 void show_on_terminal(const std::string& text) {
   const py::gil_scoped_acquire acquire;
   try {
     stream("stderr").attr("write")(text);
   } catch (py::error_already_set& failure) {
-    failure.discard_as_unraisable("stillmap's progress");
+    if (failure.matches(PyExc_KeyboardInterrupt)) PyErr_SetInterrupt();
   }
 }
 

@@ -2,7 +2,6 @@
 // The extension module of the Python package: python/stillmap has the rest, and its documentation.
 #include <string>
 
-#include "apps/version.hpp"
 #include "python/bindings/bindings.hpp"
 #include "stillmap/core/error.hpp"
 
@@ -12,7 +11,7 @@ PYBIND11_MODULE(_core, module) {
   py::options options;
   options.disable_function_signatures();  // doc() has them
   module.doc() = "The C++ part of stillmap. Use the package `stillmap`, which has all names of it.";
-  module.attr("__version__") = std::string(stillmap::kVersion);
+  module.attr("__version__") = STILLMAP_VERSION;
   const py::object error =
       py::register_exception<stillmap::Error>(module, "Error", PyExc_ValueError);
   error.attr("__module__") = "stillmap";

@@ -16,6 +16,7 @@
 
 #include "python/bindings/arrays.hpp"
 #include "python/bindings/bindings.hpp"
+#include "python/bindings/pixels.hpp"
 #include "stillmap/core/error.hpp"
 #include "stillmap/core/joined.hpp"
 #include "stillmap/perception/detections/class_names.hpp"
@@ -61,10 +62,7 @@ cv::Mat1b painted(const py::array& masks, const std::vector<float>& scores) {
   const auto rows = static_cast<int>(bytes.shape(1)), columns = static_cast<int>(bytes.shape(2));
   cv::Mat1b ids(rows, columns, std::uint8_t{0});
   for (const std::size_t i : order) {
-    const std::uint8_t* mask = bytes.data(static_cast<py::ssize_t>(i), 0, 0);
-    for (std::uint8_t& id : ids) {
-      if (*mask++ != 0) id = static_cast<std::uint8_t>(i + 1);
-    }
+    paint(ids, bytes.data(static_cast<py::ssize_t>(i), 0, 0), static_cast<std::uint8_t>(i + 1));
   }
   return ids;
 }
@@ -95,20 +93,10 @@ ObjectMask mask_of(const py::object& masks, const std::vector<float>& scores) {
 
 std::vector<PixelBox> boxes_of_mask(const ObjectMask& mask, std::size_t count) {
   if (mask.mat.empty() && count > 0) throw Error("boxes: missing; expected boxes or masks");
-  std::vector<PixelBox> boxes(count, {1e9, 1e9, 0, 0});
-  for (int v = 0; v < mask.mat.rows; ++v) {
-    for (int u = 0; u < mask.mat.cols; ++u) {
-      if (mask.mat(v, u) == 0) continue;
-      PixelBox& box = boxes[static_cast<std::size_t>(mask.mat(v, u)) - 1];
-      box = {std::min(box.x0, double(u)),
-             std::min(box.y0, double(v)),
-             std::max(box.x1, u + 1.0),
-             std::max(box.y1, v + 1.0)};
-    }
-  }
+  std::vector<PixelBox> boxes = boxes_around(mask.mat, count);
   for (std::size_t i = 0; i < count; ++i) {
-    if (boxes[i].x1 == 0)
-      throw Error("masks: object {} has no pixel; give boxes, or leave it out", i);
+    if (boxes[i].area() > 0) continue;
+    throw Error("masks: object {} has no pixel; give boxes, or leave it out", i);
   }
   return boxes;
 }
@@ -220,7 +208,7 @@ void add_detections(py::module_& module) {
            py::arg("scores") = py::none(),
            py::arg("boxes") = py::none(),
            py::arg("masks") = py::none(),
-           doc(std::string("__init__($self, ") + signature, "See the class.").c_str())
+           doc(std::string("__init__(self, ") + signature, "See the class.").c_str())
       .def_property_readonly("class_names", &names_of, "A name for each object.")
       .def_property_readonly("scores", &scores_array, "Confidence of the network, N float32.")
       .def_property_readonly("boxes", &boxes_array, "[x0, y0, x1, y1] in pixels, N x 4 float64.")
@@ -240,12 +228,12 @@ void add_segmenter(py::module_& module) {
       .def(py::init<std::string, int>(),
            py::arg("description") = "auto",
            py::arg("threads") = 2,
-           doc("__init__($self, description='auto', threads=2)", "See the class.").c_str())
+           doc("__init__(self, description='auto', threads=2)", "See the class.").c_str())
       .def("__call__",
            &LazySegmenter::find,
            py::arg("color"),
            py::arg("stamp") = 0.0,
-           doc("__call__($self, color, stamp=0.0)", "The objects in an image.").c_str())
+           doc("__call__(self, color, stamp=0.0)", "The objects in an image.").c_str())
       .def("__repr__", [](const LazySegmenter& self) {
         return fmt::format("<stillmap.Segmenter {}>", self.description());
       });

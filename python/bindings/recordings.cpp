@@ -93,14 +93,14 @@ void add_frame(py::module_& module) {
 void add_sequence(py::module_& module) {
   py::class_<FrameStream>(module, "FrameIterator", "The frames of a Sequence, once.")
       .def("__iter__", [](const py::object& self) { return self; })
-      .def("__next__", &next_frame, doc("__next__($self)", "The next Frame.").c_str());
+      .def("__next__", &next_frame, doc("__next__(self)", "The next Frame.").c_str());
   py::class_<SequenceFolder>(
       module, "Sequence", doc("Sequence(folder, camera=None)", kSequenceDoc).c_str())
       .def(py::init(&open_folder),
            py::arg("folder"),
            py::arg("camera") = py::none(),
-           doc("__init__($self, folder, camera=None)", "See the class.").c_str())
-      .def("__iter__", &SequenceFolder::open, doc("__iter__($self)", "From the start.").c_str())
+           doc("__init__(self, folder, camera=None)", "See the class.").c_str())
+      .def("__iter__", &SequenceFolder::open, doc("__iter__(self)", "From the start.").c_str())
       .def("__len__",
            [](const SequenceFolder& self) {
              if (self.frames) return *self.frames;
@@ -123,7 +123,7 @@ void add_writer(py::module_& module) {
            py::arg("folder"),
            py::arg("width"),
            py::arg("height"),
-           doc("__init__($self, folder, width, height)", "See the class.").c_str())
+           doc("__init__(self, folder, width, height)", "See the class.").c_str())
       .def(
           "add",
           [](DetectionsWriter& self, const py::object& stamp, FrameDetections objects) {
@@ -132,10 +132,10 @@ void add_writer(py::module_& module) {
           },
           py::arg("stamp"),
           py::arg("objects"),
-          doc("add($self, stamp, objects)",
+          doc("add(self, stamp, objects)",
               "The Detections of an image; stamps as the sequence has them, increasing.")
               .c_str())
-      .def("finish", &DetectionsWriter::finish, doc("finish($self)", "Writes the list.").c_str());
+      .def("finish", &DetectionsWriter::finish, doc("finish(self)", "Writes the list.").c_str());
 }
 
 }  // namespace

@@ -61,12 +61,12 @@ void add_sessions(py::module_& module) {
           },
           py::arg("file"),
           Release(),
-          doc("save($self, file)", "Writes a map.stillmap.").c_str())
+          doc("save(self, file)", "Writes a map.stillmap.").c_str())
       .def("merged",
            &merged,
            py::arg("other"),
            Release(),
-           doc("merged($self, other)",
+           doc("merged(self, other)",
                "Both in one, in this session's coordinates, by the places that they have in\n"
                "common; None where no such place is recognised.")
                .c_str())
@@ -76,7 +76,7 @@ void add_sessions(py::module_& module) {
             return session_cloud(self.session, main_submap(self.session), self.name);
           },
           Release(),
-          doc("map($self)", "The dense map.").c_str())
+          doc("map(self)", "The dense map.").c_str())
       .def_property_readonly(
           "trajectory",
           [](const SavedSession& self) {

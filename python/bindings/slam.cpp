@@ -191,7 +191,7 @@ void add_slam_class(py::module_& module) {
            py::arg("threads") = 2,
            py::arg("load") = py::none(),
            py::arg("localize_only") = false,
-           doc("__init__($self, " + signature, "See the class.").c_str())
+           doc("__init__(self, " + signature, "See the class.").c_str())
       .def(
           "process",
           [](Slam& self,
@@ -208,19 +208,19 @@ void add_slam_class(py::module_& module) {
           py::arg("objects") = py::none(),
           py::kw_only(),
           py::arg("copy") = false,
-          doc("process($self, color, depth, stamp, objects=None, *, copy=False)", kProcessDoc)
+          doc("process(self, color, depth, stamp, objects=None, *, copy=False)", kProcessDoc)
               .c_str())
       .def("map",
            &Slam::map,
-           doc("map($self)", "The dense map so far, as finish() would give it now.").c_str())
+           doc("map(self)", "The dense map so far, as finish() would give it now.").c_str())
       .def(
           "finish",
           [](Slam& self) { return std::const_pointer_cast<RunResult>(self.finish()); },
-          doc("finish($self)", "Ends the run; later calls give the same RunResult.").c_str())
+          doc("finish(self)", "Ends the run; later calls give the same RunResult.").c_str())
       .def("save",
            &Slam::save,
            py::arg("file"),
-           doc("save($self, file)", "Saves the session as a map.stillmap, after finish().").c_str())
+           doc("save(self, file)", "Saves the session as a map.stillmap, after finish().").c_str())
       .def_property_readonly("needs_objects",
                              &Slam::needs_objects,
                              "Whether a map can begin at the next frame only if its objects come "

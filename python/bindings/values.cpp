@@ -226,9 +226,9 @@ void add_camera(py::module_& module) {
       module, "Camera", doc(std::string("Camera(") + kCameraValues, kCameraDoc).c_str());
   camera
       .def(py::init(&make_camera),
-           doc(std::string("__init__($self, ") + kCameraValues, "See the class.").c_str())
+           doc(std::string("__init__(self, ") + kCameraValues, "See the class.").c_str())
       .def_static("load",
-                  &camera_by_name,
+                  &camera_of,
                   py::arg("name_or_file"),
                   doc("load(name_or_file)",
                       "A built-in camera (tum_fr1, tum_fr2, tum_fr3, bonn), or that of a "
@@ -236,7 +236,7 @@ void add_camera(py::module_& module) {
                       .c_str())
       .def("yaml",
            &format_camera_yaml,
-           doc("yaml($self)", "The text of a camera file, which load() reads back.").c_str())
+           doc("yaml(self)", "The text of a camera file, which load() reads back.").c_str())
       .def_property_readonly("matrix", &camera_matrix, "fx 0 cx; 0 fy cy; 0 0 1.")
       .def_readonly("name", &CameraModel::name, "Of a built-in camera, or of its file.")
       .def_readonly("width", &CameraModel::width_px, "Columns of both images.")
@@ -258,7 +258,7 @@ void add_trajectory(py::module_& module) {
       .def(py::init(&make_poses),
            py::arg("stamps"),
            py::arg("poses"),
-           doc("__init__($self, stamps, poses)", "See the class.").c_str())
+           doc("__init__(self, stamps, poses)", "See the class.").c_str())
       .def_static(
           "load",
           [](const std::filesystem::path& file) { return Poses{read_trajectory(file)}; },
@@ -270,7 +270,7 @@ void add_trajectory(py::module_& module) {
             save_trajectory(file, self.trajectory);
           },
           py::arg("file"),
-          doc("save($self, file)", "Writes a file in the format of the TUM RGB-D benchmark.")
+          doc("save(self, file)", "Writes a file in the format of the TUM RGB-D benchmark.")
               .c_str())
       .def_property_readonly("stamps", &stamps_array, "Seconds, N float64.")
       .def_property_readonly("poses", &poses_array, "Camera to world, metres, N x 4 x 4 float64.")
@@ -302,7 +302,7 @@ void add_cloud(py::module_& module) {
            py::arg("colors") = py::none(),
            py::arg("labels") = py::none(),
            py::arg("normals") = py::none(),
-           doc("__init__($self, points, colors=None, labels=None, normals=None)", "See the class.")
+           doc("__init__(self, points, colors=None, labels=None, normals=None)", "See the class.")
                .c_str())
       .def_static("load",
                   &read_ply,
@@ -314,7 +314,7 @@ void add_cloud(py::module_& module) {
           [](const PointCloud& self, const std::filesystem::path& file) { save_map(file, self); },
           py::arg("file"),
           py::call_guard<py::gil_scoped_release>(),
-          doc("save($self, file)", "Writes a binary PLY file, as the program's map.ply.").c_str())
+          doc("save(self, file)", "Writes a binary PLY file, as the program's map.ply.").c_str())
       .def_property_readonly("points", points, "Metres, N x 3 float32.")
       .def_property_readonly("colors", colors, "Red, green, blue, N x 3 uint8.")
       .def_property_readonly("labels", labels, "Places in CLASS_NAMES, N uint8; None: no labels.")
@@ -350,11 +350,11 @@ std::optional<CameraModel> optional_camera_of(const py::object& camera) {
 Settings settings_of(const py::object& settings) {
   Settings result;
   if (settings.is_none()) return result;
-  if (!py::isinstance<py::dict>(settings)) {
+  if (!py::hasattr(settings, "keys")) {
     throw Error("settings: {}, expected a dict such as {{\"tracking.features\": 1500}}",
                 description_of(settings));
   }
-  for (const auto& [key, value] : py::reinterpret_borrow<py::dict>(settings)) {
+  for (const auto& [key, value] : py::dict(settings)) {
     result.set(py::cast<std::string>(py::str(key)), text_of(value));
   }
   return result;
