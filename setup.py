@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Builds the Python package: `pip install --no-build-isolation .` (docs/python.md). CMake builds the
-extension module, in build/release where `make build` has made that for the same Python, else in
-build/python."""
+"""Builds the Python package: `pip install --no-build-isolation .` (docs/python.md). CMake builds
+the extension module, in build/release where `make build` has made that for the same Python, else
+in build/python."""
 import os
 import pathlib
 import re

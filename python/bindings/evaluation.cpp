@@ -31,9 +31,9 @@ metres after rigid alignment, "rpe" per second (None where the trajectory is too
 constexpr const char* kEvaluateMapDoc =
     R"(A map against true surfaces: completeness, ghosts, accuracy.
 
-`map`, `static` (the true static surface) and `dynamic` (what moving things swept) are a PointCloud or
-a PLY file. `groundtruth` and `trajectory`, both or none, align the map; without, map and truth share
-a coordinate frame. The dict is that of "map" in `stillmap evaluate map --json`.)";
+`map`, `static` (the true static surface) and `dynamic` (what moving things swept) are a PointCloud
+or a PLY file. `groundtruth` and `trajectory`, both or none, align the map; without, map and truth
+share a coordinate frame. The dict is that of "map" in `stillmap evaluate map --json`.)";
 
 py::object as_python(const nlohmann::ordered_json& json) {
   return py::module_::import("json").attr("loads")(json.dump());

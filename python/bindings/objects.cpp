@@ -173,7 +173,7 @@ class LazySegmenter {
     const Stamp time = python::stamp_of(stamp);
     const py::gil_scoped_release release;
     const std::shared_ptr<const Segmenter> network = made_for(image.mat.size());
-    return network->segment(image, time);
+    return numbered_in_order(network->segment(image, time));
   }
   [[nodiscard]] const std::string& description() const { return description_; }
 

@@ -2,6 +2,7 @@
 #include "python/bindings/pixels.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -48,6 +49,19 @@ void paint(cv::Mat1b& ids, const std::uint8_t* mask, std::uint8_t id) {
     std::uint8_t* row = ids[v];
     for (int u = 0; u < ids.cols; ++u) row[u] = *mask++ != 0 ? id : row[u];
   }
+}
+
+FrameDetections numbered_in_order(const FrameDetections& found) {
+  FrameDetections result = found;
+  std::array<std::uint8_t, 256> place{};
+  for (std::size_t i = 0; i < found.objects.size(); ++i) {
+    const auto id = static_cast<std::uint8_t>(i + 1);
+    place.at(static_cast<std::size_t>(found.objects[i].id)) = id;
+    result.objects[i].id = id;
+  }
+  result.mask.mat = found.mask.mat.clone();
+  for (std::uint8_t& id : result.mask.mat) id = place[id];
+  return result;
 }
 
 std::vector<PixelBox> boxes_around(const cv::Mat1b& ids, std::size_t count) {

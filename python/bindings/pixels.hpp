@@ -20,6 +20,8 @@ namespace stillmap::python {
 
 /// Sets the ids of the pixels where `mask` (as many bytes as `ids` has pixels) is not 0.
 void paint(cv::Mat1b& ids, const std::uint8_t* mask, std::uint8_t id);
+/// The detections with the ids 1, 2, ... in the order of the objects. A folder may have any.
+[[nodiscard]] FrameDetections numbered_in_order(const FrameDetections& found);
 /// The box around the pixels of each id from 1 to `count`; an empty one for an id without pixels.
 [[nodiscard]] std::vector<PixelBox> boxes_around(const cv::Mat1b& ids, std::size_t count);
 

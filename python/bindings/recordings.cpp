@@ -29,8 +29,8 @@ constexpr const char* kSequenceDoc = R"(The frames of a recorded sequence.
     for frame in Sequence("office"):
         slam.process(frame.color, frame.depth, frame.stamp_text)
 
-`camera` replaces the one that the sequence tells. Frames whose images are damaged are left out, with
-a warning.)";
+`camera` replaces the one that the sequence tells. Frames whose images are damaged are left out,
+with a warning.)";
 
 // Each iteration reads the sequence from its beginning.
 struct SequenceFolder {

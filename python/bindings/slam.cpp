@@ -27,16 +27,16 @@ constexpr const char* kSlamDoc =
     result = slam.finish()                        # result.trajectory, result.map
 
 `camera`: a Camera, or the name or file of one. `settings`: a dict by key; default_settings() lists
-them, docs/settings.md explains them. `threads`: the results are the same bits with any number. `load`: a
-map.stillmap to go on from; with `localize_only` that map stays as it is. World coordinates are those
-of the first tracked camera: x right, y down, z forward, metres. Python's lock is released while the
-library works.)";
+them, docs/settings.md explains them. `threads`: the results are the same bits with any number.
+`load`: a map.stillmap to go on from; with `localize_only` that map stays as it is. World coordinates
+are those of the first tracked camera: x right, y down, z forward, metres. Python's lock is released
+while the library works.)";
 constexpr const char* kProcessDoc =
     R"(Tracks a frame and returns what became of it.
 
 `color`: height x width x 3 uint8, red, green, blue. `depth`: height x width, float32 in metres (0,
-NaN, infinite or negative: missing) or uint16 in units of the camera's depth_factor. `stamp`: seconds,
-as a number or its text; later than the last. `objects`: the Detections of this image, by Segmenter
+NaN, infinite or negative: missing) or uint16 in units of the camera's depth_factor. `stamp`:
+seconds, as a number or its text; later than the last. `objects`: the Detections of this image, by Segmenter
 or any other network. None means that no network looked at it: in a run that had objects before,
 they are carried on, and the frame adds nothing to the map.
 

@@ -84,7 +84,8 @@ class PointCloud:
     def normals(self) -> NDArray[np.float32] | None: ...
 
 class Detections:
-    def __init__(self, class_names: List[str] = (), scores: List[float] | NDArray[Any] | None = None,
+    def __init__(self, class_names: List[str] = (),
+                 scores: List[float] | NDArray[Any] | None = None,
                  boxes: ArrayLike | None = None, masks: ArrayLike | None = None) -> None: ...
     def __len__(self) -> int: ...
     @property

@@ -1,7 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Images and objects as arrays: what is shared, what is copied, what is refused."""
 import gc
+import os
+import subprocess
 import sys
+import threading
+import time
 
 import numpy as np
 import pytest
@@ -35,8 +39,8 @@ def run(change=lambda color, depth: (color, depth), **options):
 
 
 def test_the_poses_are_those_of_the_motion():
-    # 2 pixels of 150 at 1.5 m: what is in the middle of the image is 2 cm a frame farther right. (The
-    # plane wall alone hardly tells a step from a turn.)
+    # 2 pixels of 150 at 1.5 m: what is in the middle of the image is 2 cm a frame farther right.
+    # (The plane wall alone hardly tells a step from a turn.)
     middle = run()[-1] @ [0, 0, 1.5, 1]
     assert np.allclose(middle[:3], [0.06, 0, 1.5], atol=0.005)
 
@@ -45,11 +49,12 @@ def test_the_poses_are_those_of_the_motion():
     ("bgr view", lambda color, depth: (color[..., ::-1].copy()[..., ::-1], depth)),
     ("rows apart", lambda color, depth: (np.pad(color, ((0, 0), (0, 9), (0, 0)))[:, :WIDTH],
                                          np.pad(depth, ((0, 0), (0, 9)))[:, :WIDTH])),
-    ("columns apart", lambda color, depth: (color.repeat(2, 1)[:, ::2], depth.repeat(2, 1)[:, ::2])),
+    ("columns apart", lambda color, depth: (color.repeat(2, 1)[:, ::2],
+                                            depth.repeat(2, 1)[:, ::2])),
     ("upside down", lambda color, depth: (color[::-1].copy()[::-1], depth[::-1].copy()[::-1])),
     ("millimetres", lambda color, depth: (color, (depth * 1000).astype(np.uint16))),
-    ("read only", lambda color, depth: (np.frombuffer(color.tobytes(), np.uint8).reshape(color.shape),
-                                        depth)),
+    ("read only", lambda color, depth: (
+        np.frombuffer(color.tobytes(), np.uint8).reshape(color.shape), depth)),
 ])
 def test_the_layout_of_arrays_makes_no_difference(name, change):
     assert np.array_equal(run(change), run()), name
@@ -146,7 +151,7 @@ def process_after_the_end():
 
 
 @pytest.mark.parametrize("call, message", [
-    (lambda: process(color=COLOR[..., :2]), "color: 120 x 160 x 2 uint8, expected height x width x 3"),
+    (lambda: process(color=COLOR[..., :2]), "color: 120 x 160 x 2 uint8, expected height x"),
     (lambda: process(color=COLOR / 255), "color: 120 x 160 x 3 float64, expected"),
     (lambda: process(color=COLOR.tolist()), "color: a list, expected"),
     (lambda: process(color=COLOR[:100]), "color: 100 x 160 pixels, expected 120 x 160"),
@@ -163,7 +168,8 @@ def process_after_the_end():
     (lambda: stillmap.Detections(["person"]), "boxes: missing; expected boxes or masks"),
     (lambda: stillmap.Detections(["a"], masks=np.zeros((1, 9, 9))), "masks: object 0 has no pixel"),
     (lambda: stillmap.Detections(["a"], scores=[1, 1], boxes=[[0, 0, 1, 1]]), "scores: 2 of them"),
-    (lambda: stillmap.Camera(width=9, height=9, fx=1, fy=1, cx=0, cy=0, k4=1), "Camera: unknown k4"),
+    (lambda: stillmap.Camera(width=9, height=9, fx=1, fy=1, cx=0, cy=0, k4=1),
+     "Camera: unknown k4"),
     (lambda: stillmap.Camera(width=9, height=9), "Camera: fx is missing"),
     (lambda: stillmap.Camera.load("tum_fr7"), "unknown camera 'tum_fr7': did you mean"),
     (lambda: stillmap.Slam(3), "camera: a int, expected a Camera"),
@@ -172,10 +178,10 @@ def process_after_the_end():
     (lambda: stillmap.Slam(camera(), localize_only=True), "localize_only needs a map"),
     (lambda: stillmap.Slam(camera(), threads=0), "threads: 0, expected 1 or more"),
     (lambda: stillmap.Slam(camera()).save("x"), "x: finish() comes before save()"),
-    (lambda: stillmap.Trajectory([0, 0], np.tile(np.eye(4), (2, 1, 1))), "stamps[1]: 0.000000 after"),
+    (lambda: stillmap.Trajectory([0, 0], np.tile(np.eye(4), (2, 1, 1))), "stamps[1]: 0.000"),
     (lambda: stillmap.Trajectory([0], [2 * np.eye(4)]), "poses[0]: no rigid transform"),
     (lambda: stillmap.Trajectory([0], np.eye(4)), "poses: 4 x 4 float64, expected 1 x 4 x 4"),
-    (lambda: stillmap.PointCloud(np.zeros((2, 2))), "points: 2 x 2 float64, expected N x 3 float32"),
+    (lambda: stillmap.PointCloud(np.zeros((2, 2))), "points: 2 x 2 float64, expected N x 3"),
     (lambda: stillmap.PointCloud(np.zeros((2, 3)), np.zeros((2, 3))), "colors: 2 x 3 float64"),
     (lambda: stillmap.Segmenter("bogus")(COLOR), "bogus"),
     (lambda: stillmap.Sequence("/nowhere"), "/nowhere"),
@@ -196,3 +202,39 @@ def test_settings_have_their_types():
     assert defaults["tracking.features"] > 0 and isinstance(defaults["tracking.features"], int)
     assert defaults["dynamics.mode"] == "full" and defaults["dynamics.fill_boxes"] is True
     stillmap.Slam(camera(), defaults)  # takes what it gives
+
+
+def test_other_threads_run_while_the_library_works():
+    slam = stillmap.Slam(camera(), threads=1)
+    for k in range(20):
+        slam.process(*images(2 * k), k / 30)
+    begun = threading.Event()
+
+    def finish():
+        begun.set()
+        for _ in range(40):
+            slam.map()  # each some milliseconds of C++
+
+    worker = threading.Thread(target=finish)
+    worker.start()
+    begun.wait()
+    ticks = 0
+    while worker.is_alive():
+        ticks += 1
+        time.sleep(0.0002)
+    # With the lock held, this thread would run between two calls alone.
+    assert ticks > 2 * 40
+
+
+@pytest.mark.parametrize("end", ["", "del slam, color, depth", "slam.finish()", "sys.exit(0)"])
+def test_python_ends_with_a_slam_that_is_still_there(end, tmp_path):
+    script = tmp_path / "script.py"
+    script.write_text("from arrays_test import *\n"
+                      "slam = stillmap.Slam(camera(), threads=3)\n"
+                      "for k in range(6):\n"
+                      "    color, depth = images(2 * k)\n"
+                      "    slam.process(color, depth, k / 30)\n" + end)
+    done = subprocess.run([sys.executable, script], capture_output=True, text=True,
+                          env={**os.environ, "PYTHONPATH": os.pathsep.join(
+                              [os.environ["PYTHONPATH"], os.path.dirname(__file__)])})
+    assert (done.returncode, done.stderr) == (0, "")

@@ -59,8 +59,8 @@ def test_documents(document, walking, tmp_path):
     """In a folder that has what the text speaks of: a sequence `office`, its detections, images."""
     os.symlink(walking.folder, tmp_path / "office")
     given = ("import numpy as np\n"
-             "frames = [(np.full((480, 640, 3), 99, np.uint8), np.ones((480, 640), np.float32), 0.0)]\n"
-             "color, depth, stamp = frames[0]\n")
+             "color, depth = np.full((480, 640, 3), 99, np.uint8), np.ones((480, 640), np.float32)\n"
+             "frames = [(color, depth, 0.0)]\n")
     blocks = python_blocks(document)
     assert blocks
     (tmp_path / "blocks.py").write_text(given + "\n".join(blocks))

@@ -13,7 +13,8 @@ def test_python_costs_little():
     random = np.random.default_rng(1)
     wall = random.integers(0, 256, (48, 100, 3), dtype=np.uint8).repeat(10, 0).repeat(10, 1)
     depth = np.full((480, 640), 1.5, np.float32)
-    boxes = stillmap.Detections(["person", "chair"], [0.9, 0.8], [[9, 9, 90, 200], [300, 9, 400, 90]])
+    boxes = stillmap.Detections(["person", "chair"], [0.9, 0.8],
+                                [[9, 9, 90, 200], [300, 9, 400, 90]])
     slam = stillmap.Slam("tum_fr3", {"dynamics.mode": "mask"}, threads=1)
     added = []
     for k in range(30):

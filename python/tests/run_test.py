@@ -2,7 +2,9 @@
 """Runs over recordings: the program's bits, its messages, own networks, interruption."""
 import json
 import os
+import shutil
 import signal
+import subprocess
 import sys
 
 import numpy as np
@@ -45,8 +47,12 @@ def test_any_function_can_find_the_objects(walking, tmp_path):
     truth = stillmap.Segmenter(f"detections:{walking.folder}/detections")
     stamps = iter([frame.stamp_text for frame in walking])
     stillmap.segment(walking.folder, tmp_path / "found", lambda color: truth(color, next(stamps)))
-    own = [json.loads(line) for line in (tmp_path / "found/detections.jsonl").open()]
-    given = [json.loads(line) for line in (walking.folder / "detections/detections.jsonl").open()]
+    own, given = ([json.loads(line) for line in (folder / "detections.jsonl").open()]
+                  for folder in (tmp_path / "found", walking.folder / "detections"))
+    for line in own:  # any ids become 1, 2, ...
+        assert [thing["id"] for thing in line["objects"]] == [*range(1, len(line["objects"]) + 1)]
+    for thing in (thing for line in own + given for thing in line["objects"]):
+        del thing["id"]
     assert own == given
     run = stillmap.run(walking.folder, tmp_path / "own", frames="0:12",
                        segmenter=f"detections:{tmp_path}/found")
@@ -99,3 +105,17 @@ def test_a_sequence_is_what_lies_in_its_folder(walking):
     lines = [line for line in (walking.folder / "rgb.txt").open() if not line.startswith("#")]
     assert [frame.stamp_text for frame in frames] == [line.split()[0] for line in lines]
     assert len(list(walking)) == len(frames)  # once more, from the start
+
+
+def test_models_runs_the_script_that_is_installed_beside_the_program(tmp_path):
+    (tmp_path / "bin").mkdir()
+    shutil.copy(os.environ["STILLMAP_PROGRAM"], tmp_path / "bin/stillmap")
+    missing = subprocess.run([tmp_path / "bin/stillmap", "models"], capture_output=True, text=True)
+    assert missing.returncode == 2
+    assert "no share/stillmap/tools/fetch_models beside" in missing.stderr
+    script = tmp_path / "share/stillmap/tools/fetch_models"
+    script.parent.mkdir(parents=True)
+    script.write_text("#!/bin/sh\necho fetched; exit 7\n")
+    script.chmod(0o755)
+    done = subprocess.run([tmp_path / "bin/stillmap", "models"], capture_output=True, text=True)
+    assert (done.returncode, done.stdout) == (7, "fetched\n")
