@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # From a fresh clone on Debian 12: `make demo` or `make test`, in either order. The work is CMake's;
 # this only installs what is missing and names the usual steps.
-.PHONY: setup models configure build program test test-fast demo api bench format tidy fuzz sanitize clean
+.PHONY: setup models configure build program wheel deb test test-fast demo api bench format tidy fuzz sanitize clean
 .DEFAULT_GOAL := build
 
 program := build/release/bin/stillmap
@@ -31,6 +31,19 @@ build: configure
 # The program and what it links, no test.
 program: configure
 	@cmake --build --preset release --parallel --target stillmap_program
+
+# The Python package as a wheel in build/wheel (docs/python.md).
+wheel: configure
+	@/usr/bin/python3 -m pip wheel --quiet --no-build-isolation --no-deps --wheel-dir build/wheel .
+	@ls build/wheel/*.whl
+
+# Packages for Debian 12 in build/release/packages (docs/packages.md).
+deb: build
+	@tools/setup help2man dpkg-dev file
+	@tools/man_pages $(program) build/release/man
+	@cpack --config build/release/CPackConfig.cmake -B build/release/packages >build/release/cpack.log || \
+	  { cat build/release/cpack.log; exit 1; }
+	@ls build/release/packages/*.deb
 
 test: build
 	@ctest --preset release --parallel "$$(nproc)" --no-tests=error

@@ -25,6 +25,7 @@ void add_evaluate_command(CLI::App& app, CommandResult& result);
 void add_export_command(CLI::App& app, CommandResult& result);
 void add_merge_command(CLI::App& app, CommandResult& result);
 void add_view_command(CLI::App& app, CommandResult& result);
+void add_models_command(CLI::App& app, CommandResult& result);
 void add_config_command(CLI::App& app, CommandResult& result);
 
 /// Writes to standard output. Throws Error on failure (full disk, closed pipe).

@@ -62,6 +62,7 @@ const std::vector<AddCommand> kCommands = {add_run_command,
                                            add_export_command,
                                            add_merge_command,
                                            add_view_command,
+                                           add_models_command,
                                            add_config_command};
 
 int run(const std::vector<std::string>& arguments) {

@@ -27,6 +27,7 @@ TOPS = {
     "tooling": {"stillmap", "tooling"},
     "simulation": {"stillmap", "simulation"},
     "apps": {"stillmap", "tooling", "simulation", "apps"},
+    "python": {"stillmap", "tooling", "simulation", "apps", "python"},
     "tests": {"stillmap", "tooling", "simulation", "tests"},
     "examples": {"stillmap", "examples"},
     "bench": {"stillmap", "tooling", "simulation", "tests", "bench"},
