@@ -56,7 +56,7 @@ DepthImage seen_from(const CameraModel& c, const Eigen::Isometry3d& T_color_came
 }
 
 Eigen::Isometry3d beside() {
-  return Eigen::Translation3d(-0.12, 0.01, 0.005) *
+  return Eigen::Translation3d(-0.06, 0.01, 0.005) *
          Eigen::AngleAxisd(0.02, Eigen::Vector3d(0.3, 1, 0.2).normalized());
 }
 
@@ -161,11 +161,11 @@ TEST(DepthRegistration, AgreesWithTheTruthForDepthOfAnotherSizeAndView) {
     const CameraModel color = with_depth_camera(distorted, depth, beside());
     const DepthImage raw = seen_from(depth, beside());
     const Comparison done = compare(color, DepthRegistration(color).to_color(raw), 4);
-    EXPECT_GT(done.compared, 45000);
+    EXPECT_GT(done.compared, 55000);
     EXPECT_EQ(done.holes, 0) << depth.width_px;
     EXPECT_LT(done.mean_m, 0.001) << depth.width_px;
     EXPECT_LT(done.greatest_m, 0.02) << depth.width_px;
-    EXPECT_GT(done.hidden, 20) << depth.width_px;
+    EXPECT_GE(done.hidden, 5) << depth.width_px;
     EXPECT_EQ(done.hidden_known, 0) << depth.width_px;
   }
 }
