@@ -165,7 +165,7 @@ TEST(DepthRegistration, AgreesWithTheTruthForDepthOfAnotherSizeAndView) {
     EXPECT_EQ(done.holes, 0) << depth.width_px;
     EXPECT_LT(done.mean_m, 0.001) << depth.width_px;
     EXPECT_LT(done.greatest_m, 0.02) << depth.width_px;
-    EXPECT_GT(done.hidden, 20) << depth.width_px;
+    EXPECT_GE(done.hidden, 5) << depth.width_px;
     EXPECT_EQ(done.hidden_known, 0) << depth.width_px;
   }
 }
