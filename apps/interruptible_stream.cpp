@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/interruption.hpp"
-
 #include <fmt/core.h>
+
+#include "apps/interruption.hpp"
 
 namespace stillmap {
 

@@ -81,7 +81,8 @@ double scale_of(const TrajectoryArguments& arguments,
 }
 
 std::size_t frames_in(const TrajectoryArguments& arguments, std::size_t tracked) {
-  const std::size_t frames = Sequence::open(arguments.sequence).size();
+  const SequenceOptions as_it_looks;
+  const std::size_t frames = Sequence::open(arguments.sequence, as_it_looks).size();
   if (tracked > frames) {
     throw Error("{}: {} poses, but {} has only {} frames; is it of this sequence?",
                 arguments.estimate,

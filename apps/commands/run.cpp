@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
@@ -211,23 +214,42 @@ std::optional<LiveOptions> live_options(const RunArguments& arguments) {
   return live;
 }
 
+/// A recording with its camera, the part of it to run on, and its true poses.
+struct Recording {
+  Sequence sequence;
+  FrameSelection selection;
+  std::optional<Trajectory> true_poses;
+  std::vector<std::string> warnings;  // of reading it
+};
+
+Recording open_recording(const RunArguments& arguments) {
+  Recording recording{
+      open_sequence(arguments.sequence), selected_frames(arguments), std::nullopt, {}};
+  Sequence& sequence = recording.sequence;
+  recording.warnings = sequence.remarks().warnings;
+  const SensorCamera sensor = sensor_camera(sequence, recording.selection, arguments.depth_factor);
+  sequence.use_camera(sensor.camera);
+  if (!sensor.depth_unit.empty()) recording.warnings.push_back(sensor.depth_unit);
+  GroundTruth groundtruth = read_groundtruth(arguments, sequence);
+  std::ranges::move(groundtruth.warnings, std::back_inserter(recording.warnings));
+  if (!groundtruth.poses.empty()) recording.true_poses = std::move(groundtruth.poses);
+  if (arguments.poses == "truth" && !recording.true_poses) {
+    throw Error("--poses truth: {} has no ground truth; name one with --groundtruth",
+                sequence.path().string());
+  }
+  return recording;
+}
+
 int run(const RunArguments& arguments) {
   SystemConfig config = make_config(arguments);
   if (arguments.localize_only && arguments.load.empty()) {
     throw Error(
         "--localize-only needs a map to find the camera in: name a map.stillmap with --load");
   }
-  Sequence sequence = open_sequence(arguments.sequence);
-  GroundTruth groundtruth = read_groundtruth(arguments, sequence);
-  if (arguments.poses == "truth" && groundtruth.poses.empty()) {
-    throw Error("--poses truth: {} has no ground truth; name one with --groundtruth",
-                sequence.path().string());
-  }
+  const Recording recording = open_recording(arguments);
+  const Sequence& sequence = recording.sequence;
   const std::optional<SequenceTruth> truth = read_sequence_truth(arguments.sequence.path);
-  const FrameSelection selection = selected_frames(arguments);
-  const SensorCamera sensor = sensor_camera(sequence, selection, arguments.depth_factor);
-  sequence.use_camera(sensor.camera);
-  SequenceStream all_frames(sequence, selection);
+  SequenceStream all_frames(sequence, recording.selection);
   InterruptibleStream frames(all_frames);
   note_interruption();
   const ChosenSegmenter chosen =
@@ -242,13 +264,9 @@ int run(const RunArguments& arguments) {
   options.live = live_options(arguments);
   SteadyClock clock;
   if (options.live) options.live->clock = &clock;
-  const std::optional<Trajectory> true_poses =
-      groundtruth.poses.empty() ? std::nullopt : std::optional(std::move(groundtruth.poses));
-  if (truth || arguments.poses == "truth") options.groundtruth = true_poses;
+  if (truth || arguments.poses == "truth") options.groundtruth = recording.true_poses;
   RunProgress progress(frames.size(), chosen.line);
-  std::vector<std::string> early = sequence.remarks().warnings;
-  if (!sensor.depth_unit.empty()) early.push_back(sensor.depth_unit);
-  early.insert(early.end(), groundtruth.warnings.begin(), groundtruth.warnings.end());
+  std::vector<std::string> early = recording.warnings;
   for (const std::string& warning : early) progress.on_warning(warning);
   if (!chosen.warning.empty()) early.push_back(chosen.warning);
   std::vector<Observer*> observers = {&progress};
@@ -268,7 +286,7 @@ int run(const RunArguments& arguments) {
   report.version = kVersion;
   report.sequence = sequence.name();
   report.config_yaml = dump_yaml(list_fields(config));
-  report.groundtruth = true_poses;
+  report.groundtruth = recording.true_poses;
   evaluate(report);
   choose_map(run, arguments);
   if (truth) evaluate_maps(run, *truth);
