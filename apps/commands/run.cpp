@@ -11,6 +11,7 @@
 #include "apps/image_names.hpp"
 #include "apps/option_value.hpp"
 #include "apps/run_progress.hpp"
+#include "apps/run_summary.hpp"
 #include "apps/steady_clock.hpp"
 #include "apps/version.hpp"
 #include "stillmap/config/config_io.hpp"
@@ -23,12 +24,11 @@
 #include "stillmap/session/session_io.hpp"
 #include "tooling/eval/ate.hpp"
 #include "tooling/eval/rpe.hpp"
+#include "tooling/pipeline/inpainted_folder.hpp"
 #include "tooling/pipeline/map_evaluation.hpp"
 #include "tooling/pipeline/object_folder.hpp"
 #include "tooling/pipeline/run_folder.hpp"
 #include "tooling/pipeline/run_sequence.hpp"
-#include "tooling/report/time_summary.hpp"
-#include "tooling/report/tracking_gaps.hpp"
 
 namespace stillmap {
 namespace {
@@ -54,6 +54,7 @@ struct RunArguments {
   std::string groundtruth;
   std::string poses = "estimated";
   std::string objects_out;
+  std::string inpainted;
 };
 
 SystemConfig make_config(const RunArguments& arguments) {
@@ -169,67 +170,6 @@ void evaluate_maps(SequenceRun& run, const SequenceTruth& truth) {
   }
 }
 
-std::string map_line(const RunReport& report) {
-  std::string text = fmt::format("map         {} points", report.map->size());
-  if (report.map_quality) text += fmt::format(", sa {:.3f}", report.map_quality->sa);
-  if (report.map_quality && report.map_quality->da) {
-    text += fmt::format(", da {:.3f}", *report.map_quality->da);
-  }
-  return text + (report.map_at_true_poses ? ", at true poses\n" : "\n");
-}
-
-std::string live_line(const RunReport& report) {
-  if (!report.live) return {};
-  const LiveReport& live = *report.live;
-  std::string text = fmt::format("live        {} of {} frames dropped, {} looked at",
-                                 live.dropped,
-                                 report.frames_total,
-                                 live.looked_at);
-  if (const std::optional<TimeSummary> latency = summarize_times(live.latency_ms)) {
-    text += fmt::format(
-        "; pose after {:.0f} ms (median), {:.0f} ms (95 %)", latency->median, latency->p95);
-  }
-  return text + "\n";
-}
-
-std::string gap_lines(const RunReport& report) {
-  constexpr std::size_t kMost = 5;
-  const std::vector<TrackingGap> gaps = tracking_gaps(report.lost, report.estimate);
-  std::string text;
-  for (std::size_t i = 0; i < std::min(gaps.size(), kMost); ++i) {
-    text += fmt::format("no pose     {}\n", gap_text(gaps[i]));
-  }
-  if (gaps.size() > kMost) text += fmt::format("            and {} more\n", gaps.size() - kMost);
-  return text;
-}
-
-std::string summary(const RunArguments& arguments,
-                    const RunReport& report,
-                    const std::string& objects_line) {
-  std::string text = fmt::format("objects     {}\ntracked     {} of {} frames, {} key frames\n",
-                                 objects_line,
-                                 report.frames_tracked,
-                                 report.frames_total,
-                                 report.keyframes.size());
-  text += gap_lines(report);
-  if (report.ate) {
-    text += fmt::format("ATE         {:.4f} m rmse over {} poses\n",
-                        report.ate->translation_m.rmse,
-                        report.ate->pairs.size());
-  }
-  if (!report.loops.empty()) {
-    text += fmt::format("loops       {} closed\n", report.loops.size());
-  }
-  text += live_line(report);
-  text += map_line(report);
-  text += fmt::format("time        {:.1f} s, {:.1f} frames a second\n",
-                      *report.wall_s,
-                      static_cast<double>(report.frames_total) / *report.wall_s);
-  text += fmt::format("report      {}\n",
-                      (std::filesystem::path(arguments.out) / "report.html").string());
-  return text;
-}
-
 // The map of a run that only localises is the one that it was given.
 void save_session(Session& session, const RunArguments& arguments, const std::string& settings) {
   if (arguments.localize_only) return;
@@ -290,6 +230,10 @@ int run(const RunArguments& arguments) {
     observers.push_back(&objects.emplace(
         arguments.objects_out, cv::Size(frames.camera().width_px, frames.camera().height_px)));
   }
+  std::optional<InpaintedFolder> inpainted;
+  if (!arguments.inpainted.empty()) {
+    observers.push_back(&inpainted.emplace(arguments.inpainted, frames.camera()));
+  }
   SequenceRun run = run_sequence(frames, config, std::move(options), observers);
 
   RunReport& report = run.report;
@@ -305,7 +249,7 @@ int run(const RunArguments& arguments) {
       arguments.live ? std::optional(live_jsonl(run.live_record)) : std::nullopt;
   write_run_folder(arguments.out, run.result, report, {run.objects_jsonl, live_lines});
   save_session(run.session, arguments, report.config_yaml);
-  print_output(summary(arguments, report, chosen.line));
+  print_output(run_summary(report, chosen.line, arguments.out));
   return run.result.lost_at_end ? kLostForGood : 0;
 }
 
@@ -340,6 +284,10 @@ void add_settings(CLI::App& command, RunArguments& arguments) {
       arguments.objects_out,
       "folder for the objects of every frame as they were used, with masks: a folder "
       "of detections");
+  command.add_option("--inpainted",
+                     arguments.inpainted,
+                     "folder for the frames without what moves in them, which shows what earlier "
+                     "key frames saw behind it: a sequence");
   command.add_option("--dynamics",
                      arguments.dynamics,
                      fmt::format("what is done about what moves: {}; as dynamics.mode",
