@@ -2,6 +2,7 @@
 #include "apps/run_summary.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -20,6 +21,14 @@ std::string map_line(const RunReport& report) {
     text += fmt::format(", da {:.3f}", *report.map_quality->da);
   }
   return text + (report.map_at_true_poses ? ", at true poses\n" : "\n");
+}
+
+std::string judge_line(const RunReport& report) {
+  std::string text;
+  for (const auto& [judge, frames] : report.matches_judged_by) {
+    text += fmt::format("{}{} in {} frames", text.empty() ? "" : ", ", judge, frames);
+  }
+  return text.empty() ? text : fmt::format("matches     judged by {}\n", text);
 }
 
 std::string live_line(const RunReport& report) {
@@ -69,6 +78,7 @@ std::string run_summary(const RunReport& report,
   if (!report.loops.empty()) {
     text += fmt::format("loops       {} closed\n", report.loops.size());
   }
+  text += judge_line(report);
   text += live_line(report);
   text += map_line(report);
   text += fmt::format("time        {:.1f} s, {:.1f} frames a second\n",

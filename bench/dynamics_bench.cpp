@@ -41,7 +41,7 @@ class Office {
   }
   [[nodiscard]] Features extract(std::uint32_t step, const FrameDynamics& dynamics) {
     const FramePtr frame = office().frame(step);
-    return extractor_.extract(frame->gray, frame->depth, dynamics.excluded_from_pose);
+    return extractor_.extract(frame->gray, frame->depth, dynamics.unsearched);
   }
   [[nodiscard]] FilteredFeatures filter(std::uint32_t step,
                                         Features features,

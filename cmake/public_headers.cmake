@@ -12,6 +12,7 @@ set(stillmap_public_headers
   stillmap/geometry/camera.hpp
   stillmap/geometry/depth_camera.hpp
   stillmap/perception/detections/detections.hpp
+  stillmap/perception/motion/match_judge.hpp
   stillmap/perception/objects/frame_objects.hpp
   stillmap/perception/objects/object_finder.hpp
   stillmap/perception/objects/object_state.hpp

@@ -133,7 +133,7 @@ TEST_F(Run, RefusesWrongArguments) {
   expect_refused("wall --out out --set tracking.features=many", "tracking.features");
   expect_refused("wall --out out --set mapping.lag_frames=9", "keyframe.min_gap_frames");
   expect_refused("wall --out out --dynamics ful",
-                 "expected one of off, mask, paper, full, got 'ful'");
+                 "expected one of off, mask, ds-slam, dynaslam, paper, full, got 'ful'");
   expect_refused("wall --out out --segmenter detections:nowhere", "nowhere");
   expect_refused("wall --out out --segmenter sometimes", "--segmenter sometimes");
   for (const char* frames : {"5", "9:3", "a:b", ":-1", "4:4"}) {

@@ -14,6 +14,7 @@
 #include "apps/image_names.hpp"
 #include "apps/interruption.hpp"
 #include "apps/option_value.hpp"
+#include "apps/run_evaluation.hpp"
 #include "apps/run_progress.hpp"
 #include "apps/run_summary.hpp"
 #include "apps/sensor_camera.hpp"
@@ -27,8 +28,7 @@
 #include "stillmap/sensor/groundtruth.hpp"
 #include "stillmap/sensor/sequence_stream.hpp"
 #include "stillmap/session/session_io.hpp"
-#include "tooling/eval/ate.hpp"
-#include "tooling/eval/rpe.hpp"
+#include "tooling/pipeline/inpainted_folder.hpp"
 #include "tooling/pipeline/map_evaluation.hpp"
 #include "tooling/pipeline/object_folder.hpp"
 #include "tooling/pipeline/run_folder.hpp"
@@ -59,6 +59,7 @@ struct RunArguments {
   std::string groundtruth;
   std::string poses = "estimated";
   std::string objects_out;
+  std::string inpainted;
 };
 
 SystemConfig make_config(const RunArguments& arguments) {
@@ -156,44 +157,6 @@ GroundTruth read_groundtruth(const RunArguments& arguments, const Sequence& sequ
   return read_groundtruth(arguments.groundtruth, sequence_options(arguments.sequence).reading);
 }
 
-void evaluate(RunReport& report) {
-  if (!report.groundtruth) return;
-  report.ate = absolute_trajectory_error(*report.groundtruth, report.estimate);
-  report.rpe = relative_pose_error(*report.groundtruth, report.estimate);
-  if (!report.ate) {
-    report.warnings.push_back("no ground-truth pose is within 0.02 s of three tracked frames");
-  }
-}
-
-void choose_map(SequenceRun& run, const RunArguments& arguments) {
-  if (arguments.poses == "truth") {
-    if (run.map_at_true_poses) {
-      run.result.map = std::move(*run.map_at_true_poses);
-      run.report.map_at_true_poses = true;
-    } else {
-      run.report.warnings.push_back(
-          "--poses truth: fewer than three tracked frames have ground truth; the map has the "
-          "estimated poses");
-    }
-  }
-  run.report.map = &run.result.map;
-}
-
-void evaluate_maps(SequenceRun& run, const SequenceTruth& truth) {
-  RunReport& report = run.report;
-  try {
-    report.map_quality = run_map_quality(*report.map, report.estimate, truth);
-    if (report.map_at_true_poses) {
-      report.map_quality_true_poses = report.map_quality;
-    } else if (run.map_at_true_poses) {
-      report.map_quality_true_poses =
-          run_map_quality(*run.map_at_true_poses, report.estimate, truth);
-    }
-  } catch (const Error& error) {  // a map that is nowhere must not cost the results of a long run
-    report.warnings.push_back(fmt::format("no figures of the map: {}", error.what()));
-  }
-}
-
 FrameSelection selected_frames(const RunArguments& arguments) {
   FrameSelection selection;
   if (!arguments.frames.empty()) {
@@ -240,6 +203,27 @@ Recording open_recording(const RunArguments& arguments) {
   return recording;
 }
 
+/// The folders that a run writes a file or more to for every frame.
+class FrameFolders {
+ public:
+  FrameFolders(const RunArguments& arguments, const CameraModel& camera) {
+    const cv::Size image(camera.width_px, camera.height_px);
+    if (!arguments.objects_out.empty()) objects_.emplace(arguments.objects_out, image);
+    if (!arguments.inpainted.empty()) inpainted_.emplace(arguments.inpainted, camera);
+  }
+
+  [[nodiscard]] std::vector<Observer*> observers_with(Observer& other) {
+    std::vector<Observer*> observers = {&other};
+    if (objects_) observers.push_back(&*objects_);
+    if (inpainted_) observers.push_back(&*inpainted_);
+    return observers;
+  }
+
+ private:
+  std::optional<ObjectFolder> objects_;
+  std::optional<InpaintedFolder> inpainted_;
+};
+
 int run(const RunArguments& arguments) {
   SystemConfig config = make_config(arguments);
   if (arguments.localize_only && arguments.load.empty()) {
@@ -269,13 +253,9 @@ int run(const RunArguments& arguments) {
   std::vector<std::string> early = recording.warnings;
   for (const std::string& warning : early) progress.on_warning(warning);
   if (!chosen.warning.empty()) early.push_back(chosen.warning);
-  std::vector<Observer*> observers = {&progress};
-  std::optional<ObjectFolder> objects;
-  if (!arguments.objects_out.empty()) {
-    observers.push_back(&objects.emplace(
-        arguments.objects_out, cv::Size(frames.camera().width_px, frames.camera().height_px)));
-  }
-  SequenceRun run = run_sequence(frames, config, std::move(options), observers);
+  FrameFolders folders(arguments, frames.camera());
+  SequenceRun run =
+      run_sequence(frames, config, std::move(options), folders.observers_with(progress));
 
   RunReport& report = run.report;
   report.warnings.insert(report.warnings.begin(), early.begin(), early.end());
@@ -288,7 +268,7 @@ int run(const RunArguments& arguments) {
   report.config_yaml = dump_yaml(list_fields(config));
   report.groundtruth = recording.true_poses;
   evaluate(report);
-  choose_map(run, arguments);
+  choose_map(run, arguments.poses == "truth");
   if (truth) evaluate_maps(run, *truth);
   const std::optional<std::string> live_lines =
       arguments.live ? std::optional(live_jsonl(run.live_record)) : std::nullopt;
@@ -339,6 +319,10 @@ void add_settings(CLI::App& command, RunArguments& arguments) {
       arguments.objects_out,
       "folder for the objects of every frame as they were used, with masks: a folder "
       "of detections");
+  command.add_option("--inpainted",
+                     arguments.inpainted,
+                     "folder for the frames without what moves in them, which shows what earlier "
+                     "key frames saw behind it: a sequence");
   command.add_option("--dynamics",
                      arguments.dynamics,
                      fmt::format("what is done about what moves: {}; as dynamics.mode",

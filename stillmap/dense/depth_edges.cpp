@@ -50,4 +50,19 @@ cv::Mat1f without_edges(const cv::Mat1f& depth, const DepthEdgesConfig& config) 
   return kept;
 }
 
+cv::Mat1f without_fixed_edges(const cv::Mat1f& depth, double step_m) {
+  cv::Mat1f kept = depth.clone();
+  const auto step = static_cast<float>(step_m);
+  for (int row = 0; row + 1 < depth.rows; ++row) {
+    const float *upper = depth[row], *lower = depth[row + 1];
+    float* out = kept[row];
+    for (int x = 0; x + 1 < depth.cols; ++x) {
+      const float nearest = std::min({upper[x], upper[x + 1], lower[x], lower[x + 1]});
+      const float farthest = std::max({upper[x], upper[x + 1], lower[x], lower[x + 1]});
+      if (farthest - nearest > step) out[x] = 0;
+    }
+  }
+  return kept;
+}
+
 }  // namespace stillmap

@@ -30,10 +30,7 @@ struct LocalCloudConfig {
   static void fields(Self& self, Visitor& visit) {
     visit("cells_across",
           self.cells_across,
-          FieldInfo{"number of square cells across the image; a view's points are means over cells",
-                    "",
-                    1,
-                    10000});
+          FieldInfo{"cells: number of square cells across the image", "", 1, 10000});
     visit("join_per_m",
           self.join_per_m,
           FieldInfo{"depth within which pixels of a cell form one point: join_per_m (depth + "

@@ -34,17 +34,13 @@ cv::Mat1f static_depth(const cv::Mat1f& depth,
                        const Mask& dynamic,
                        const StaticDepthConfig& config) {
   STILLMAP_CHECK(dynamic.empty() || dynamic.mat.size() == depth.size());
-  const auto max_depth = static_cast<float>(config.max_depth_m);
-  cv::Mat1f kept;
-  if (config.edges == "fixed" || config.edges == "growing") {
-    const double growth = config.edges == "growing" ? config.edge.step_per_m : 0.0;
-    const cv::Mat1f all = within(depth, dynamic, std::numeric_limits<float>::max());
-    kept = within(without_edges(all, {config.edge.step_m, growth}), {}, max_depth);
-  } else {
-    kept = within(depth, dynamic, max_depth);
+  cv::Mat1f kept = within(depth, dynamic, std::numeric_limits<float>::max());
+  if (config.edges == "fixed") kept = without_fixed_edges(kept, config.edge.step_m);
+  if (config.edges == "growing") kept = without_edges(kept, config.edge);
+  if (config.islands == "on") {
+    kept = without_islands(kept, config.min_island_share * static_cast<double>(depth.total()));
   }
-  if (config.islands != "on") return kept;
-  return without_islands(kept, config.min_island_share * static_cast<double>(depth.total()));
+  return within(kept, {}, static_cast<float>(config.max_depth_m));
 }
 
 }  // namespace stillmap

@@ -23,14 +23,15 @@ struct StaticDepthConfig {
     visit("max_depth_m",
           self.max_depth_m,
           common_setting(FieldInfo{"greatest depth that goes into the dense map", "m", 0.1, 1000}));
-    visit("edges",
-          self.edges,
-          FieldInfo{"removal of depth edges. fixed: by edge.step_m; growing: with depth, too; "
-                    "by_mode: as dynamics.mode says",
-                    "",
-                    0,
-                    0,
-                    {"by_mode", "off", "fixed", "growing"}});
+    visit(
+        "edges",
+        self.edges,
+        FieldInfo{"removal of depth edges. fixed: by edge.step_m, missing depth being 0; growing: "
+                  "with depth, too, missing depth being no edge; by_mode: as dynamics.mode says",
+                  "",
+                  0,
+                  0,
+                  {"by_mode", "off", "fixed", "growing"}});
     visit.group("edge", self.edge);
     visit("islands",
           self.islands,
@@ -48,9 +49,8 @@ struct StaticDepthConfig {
 
 /// The depth (metres) of static surface near enough for the map; 0 elsewhere. Removes, in this
 /// order: pixels that are set in `dynamic` (of the same size, or empty) or have no depth (not over
-/// 0, not finite), edges (without_edges()), depth beyond `max_depth_m`, and islands
-/// (without_islands()). Edges come before far depth, because the rim of an object before a far wall
-/// lies between the two. "by_mode" counts as "off".
+/// 0, not finite), edges (without_fixed_edges() or without_edges()), islands (without_islands()),
+/// and depth beyond `max_depth_m`. "by_mode" counts as "off".
 [[nodiscard]] cv::Mat1f static_depth(const cv::Mat1f& depth,
                                      const Mask& dynamic,
                                      const StaticDepthConfig& config);

@@ -13,6 +13,7 @@ namespace stillmap {
 namespace {
 
 constexpr int kJumpsPerWidth = 70;
+constexpr int kFinestCells = 10000;  // across an image: each cell is a pixel
 
 }  // namespace
 
@@ -22,6 +23,10 @@ CloudConfig CloudConfig::resolved_for(const CloudRules& rules) const {
   if (depth.islands == "by_mode") config.depth.islands = rules.islands;
   if (free_space == "by_mode") config.free_space = rules.free_space;
   if (missed_people == "by_mode") config.missed_people = rules.missed_people;
+  if (view_frames == "by_mode") config.view_frames = rules.view_frames;
+  if (points == "by_mode") config.points = rules.points;
+  if (config.view_frames == "keyframes") config.view_gap_frames = config.views.enough = 0;
+  if (config.points == "pixels") config.local.cells_across = kFinestCells;
   return config;
 }
 

@@ -25,7 +25,9 @@ namespace stillmap {
 struct CloudConfig {
   double voxel_size_m = 0.01;
   StaticDepthConfig depth;
+  std::string points = "by_mode";
   LocalCloudConfig local;
+  std::string view_frames = "by_mode";
   int view_gap_frames = 4;
   ViewSelectionConfig views;
   std::string free_space = "by_mode";
@@ -47,7 +49,23 @@ struct CloudConfig {
                         0.001,
                         1.0}));
     StaticDepthConfig::fields(self.depth, visit);
+    visit("points",
+          self.points,
+          FieldInfo{"points of a view. pixels: one for each pixel; cells: means over cells of "
+                    "pixels; by_mode: as dynamics.mode says",
+                    "",
+                    0,
+                    0,
+                    {"by_mode", "pixels", "cells"}});
     LocalCloudConfig::fields(self.local, visit);
+    visit("view_frames",
+          self.view_frames,
+          FieldInfo{"frames that may become views. keyframes: all key frames and no others; all: "
+                    "as view_gap_frames and views say; by_mode: as dynamics.mode says",
+                    "",
+                    0,
+                    0,
+                    {"by_mode", "keyframes", "all"}});
     visit("view_gap_frames",
           self.view_gap_frames,
           common_setting(FieldInfo{"number of frames after a view that make any frame a view; 0: "

@@ -22,7 +22,24 @@ TEST(CloudConfig, TheModeDecidesWhatIsLeftToIt) {
   EXPECT_EQ(config.resolved_for(dynamics_mode("full").cloud).depth.islands, "off");
   EXPECT_EQ(config.resolved_for(dynamics_mode("full").cloud).free_space, "on");
 
+  for (const char* mode : {"off", "mask", "full"}) {
+    const CloudConfig resolved = config.resolved_for(dynamics_mode(mode).cloud);
+    EXPECT_EQ(resolved.view_gap_frames, config.view_gap_frames);
+    EXPECT_EQ(resolved.views.enough, config.views.enough);
+    EXPECT_EQ(resolved.local.cells_across, config.local.cells_across);
+  }
+  // Fan 2020, Eq. (1): the views are the key frames, all of them, and each pixel is a point.
+  const CloudConfig paper = config.resolved_for(dynamics_mode("paper").cloud);
+  EXPECT_EQ(paper.view_gap_frames, 0);
+  EXPECT_EQ(paper.views.enough, 0);
+  EXPECT_GE(paper.local.cells_across, 10000);
+
   CloudConfig own;
+  own.view_frames = "all";
+  own.points = "cells";
+  EXPECT_EQ(own.resolved_for(dynamics_mode("paper").cloud).view_gap_frames, own.view_gap_frames);
+  EXPECT_EQ(own.resolved_for(dynamics_mode("paper").cloud).local.cells_across,
+            own.local.cells_across);
   own.depth.edges = "off";
   own.depth.islands = "on";
   own.free_space = "on";

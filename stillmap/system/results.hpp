@@ -13,6 +13,7 @@
 #include "stillmap/core/status.hpp"
 #include "stillmap/core/trajectory.hpp"
 #include "stillmap/perception/detections/detections.hpp"
+#include "stillmap/perception/motion/match_judge.hpp"
 #include "stillmap/perception/objects/object_state.hpp"
 
 namespace stillmap {
@@ -41,12 +42,13 @@ struct FrameResult {
   bool is_keyframe = false;                                          ///< it has become a key frame
   int tracked_features = 0;                                          ///< inliers of the pose
 
-  std::vector<FeatureMark> features;  ///< off the masks
-  std::vector<ObjectState> objects;   ///< given or filled in
-  ObjectMask object_mask;             ///< pixels of all of them: i + 1 is objects[i]
-  ObjectMask network_mask;            ///< pixels of dynamic objects, by the network
-  ObjectMask extended_mask;           ///< the same after the extension by depth
-  Mask depth_jumps;                   ///< pixels whose depth has changed suddenly
+  std::vector<FeatureMark> features;               ///< off the masks, and those dropped
+  MatchJudge match_judge = MatchJudge::kNotAsked;  ///< what matches in boxes were judged by
+  std::vector<ObjectState> objects;                ///< given or filled in
+  ObjectMask object_mask;                          ///< pixels of all of them: i + 1 is objects[i]
+  ObjectMask network_mask;                         ///< pixels of dynamic objects, by the network
+  ObjectMask extended_mask;                        ///< the same after the extension by depth
+  Mask depth_jumps;                                ///< pixels whose depth has changed suddenly
   Mask excluded;  ///< pixels that no feature may have: masks, jumps and a margin
 
   double pose_ms = 0;  ///< of all work that leads to the pose, preparation included

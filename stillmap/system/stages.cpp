@@ -184,6 +184,7 @@ FrameResult System::Stages::remember(const Outcome& outcome) {
   result.is_keyframe = is_keyframe;
   result.tracked_features = tracked.inliers;
   result.features = marks_of(tracked, features);
+  result.match_judge = features.judge;
   result.object_mask = judged.objects.mask;
   result.network_mask = judged.judged.mask.raw;
   result.extended_mask = judged.judged.mask.extended;

@@ -40,7 +40,7 @@ FrameResult System::process(PreparedFrame prepared, MaskOrigin origin) {
     return s.dynamics->judge(frame, std::move(prepared.objects), prepared.measured, expected);
   });
   Features extracted = clock.time("features", prepared.corners_ms, [&] {
-    return s.extractor.extract(prepared.corners, frame.depth, dynamics.excluded_from_pose);
+    return s.extractor.extract(prepared.corners, frame.depth, dynamics.unsearched);
   });
   FilteredFeatures features = clock.time("feature filter", [&] {
     return s.dynamics->filter(frame, std::move(extracted), dynamics, expected);

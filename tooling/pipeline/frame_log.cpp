@@ -9,6 +9,8 @@ void FrameLog::on_frame(const RgbdFrame& frame, const FrameResult& result) {
   ++frames_;
   tracked_features_.push_back(result.tracked_features);
   if (!has_pose(result)) lost_.push_back(frame.stamp);
+  if (result.match_judge == MatchJudge::kNotAsked) return;
+  ++matches_judged_by_[std::string(match_judge_name(result.match_judge))];
 }
 
 void FrameLog::on_damaged(const DamagedFrame& frame) {
@@ -27,6 +29,7 @@ void FrameLog::on_warning(const std::string& warning) {
 void FrameLog::fill(RunReport& report) {
   report.skipped = std::move(damaged_);
   report.lost = std::move(lost_);
+  report.matches_judged_by = std::move(matches_judged_by_);
   report.tracked_features = std::move(tracked_features_);
   report.warnings = std::move(warnings_);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,7 @@ class FrameLog : public RunObserver {
   std::size_t frames_ = 0;
   std::vector<DamagedFrame> damaged_;
   std::vector<Stamp> lost_;
+  std::map<std::string, std::size_t> matches_judged_by_;
   std::vector<int> tracked_features_;
   std::vector<std::string> warnings_;
 };

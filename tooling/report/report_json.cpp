@@ -188,7 +188,9 @@ std::string report_json(const RunReport& report) {
                      {"rpe", rpe_json(report.rpe)},
                      {"map", map_json(report)},
                      {"map_truth_poses", map_quality_json(report.map_quality_true_poses)},
-                     {"dynamics", {{"mode", text_or_null(report.dynamics_mode)}}},
+                     {"dynamics",
+                      {{"mode", text_or_null(report.dynamics_mode)},
+                       {"matches_judged_by", report.matches_judged_by}}},
                      {"objects", objects_json(report)},
                      {"warnings", report.warnings}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -84,6 +85,9 @@ struct RunReport {
   std::optional<LiveReport> live;  ///< of a live run
 
   std::string dynamics_mode;  ///< name of the mode
+  /// Number of frames with features in boxes of dynamic objects, by what the matches of these were
+  /// judged by (match_judge_name()); empty if the mode judges no matches.
+  std::map<std::string, std::size_t> matches_judged_by;
   /// By ascending track number; nullopt without a source of objects.
   std::optional<std::vector<ObjectSummary>> objects;
   /// From the first frame to the first with an object of a dynamic class; nullopt if none.

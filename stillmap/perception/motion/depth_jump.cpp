@@ -107,11 +107,10 @@ JumpImage depth_jumps(const DepthImage& current, const DepthImage& previous, dou
     const float* before = previous.mat[row];
     std::uint8_t* jump = jumps[row];
     for (int x = 0; x < jumps.cols; ++x) {
-      const bool known = now[x] > 0 && before[x] > 0;
       const bool nearer = before[x] - now[x] > limit;
       const bool farther = now[x] - before[x] > limit;
       jump[x] = static_cast<std::uint8_t>(
-          known ? (nearer ? kCameNearer : 0) + (farther ? kWentFarther : 0) : 0);
+          now[x] > 0 ? (nearer ? kCameNearer : 0) + (farther ? kWentFarther : 0) : 0);
     }
   }
   return JumpImage(jumps);

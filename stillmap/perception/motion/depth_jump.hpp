@@ -16,7 +16,7 @@ namespace stillmap {
 
 /// The value of a pixel of a JumpImage.
 enum DepthJump : std::uint8_t {
-  kNoJump = 0,       ///< unchanged, or depth is missing now or before
+  kNoJump = 0,       ///< unchanged, or nothing is known
   kCameNearer = 1,   ///< surface appeared in front of the earlier surface
   kWentFarther = 2,  ///< the earlier surface is gone
 };
@@ -63,7 +63,8 @@ struct DepthJumpConfig {
 
 /// The pixels whose depth differs by more than `jump_m` from that of the same pixel in the previous
 /// frame, without regard to the motion of the camera (Fan 2020, section III-A, Eqs. (6)-(7)).
-/// Missing depth is no jump.
+/// Missing depth in the previous frame counts as depth 0, as there. A pixel without depth in the
+/// current frame is not marked: it is 0 already, and Eq. (7) makes it 0.
 [[nodiscard]] JumpImage depth_jumps(const DepthImage& current,
                                     const DepthImage& previous,
                                     double jump_m);

@@ -62,15 +62,18 @@ int count(const cv::Mat1b& jumps, DepthJump kind) {
 }
 
 TEST(DepthJumps, OfEquation6ByHand) {
-  const DepthImage before(cv::Mat1f((cv::Mat_<float>(1, 6) << 2.0F, 2.0F, 2.0F, 0.0F, 2.0F, 3.5F)));
-  const DepthImage now(cv::Mat1f((cv::Mat_<float>(1, 6) << 2.9F, 3.1F, 0.9F, 5.0F, 0.0F, 3.5F)));
+  const DepthImage before(
+      cv::Mat1f((cv::Mat_<float>(1, 7) << 2.0F, 2.0F, 2.0F, 0.0F, 2.0F, 3.5F, 0.0F)));
+  const DepthImage now(
+      cv::Mat1f((cv::Mat_<float>(1, 7) << 2.9F, 3.1F, 0.9F, 5.0F, 0.0F, 3.5F, 0.9F)));
   const cv::Mat1b jumps = depth_jumps(now, before, 1.0).mat;
   EXPECT_EQ(jumps(0, 0), kNoJump);
   EXPECT_EQ(jumps(0, 1), kWentFarther);
   EXPECT_EQ(jumps(0, 2), kCameNearer);
-  EXPECT_EQ(jumps(0, 3), kNoJump);  // missing before
-  EXPECT_EQ(jumps(0, 4), kNoJump);  // missing now
+  EXPECT_EQ(jumps(0, 3), kWentFarther);  // missing before is depth 0
+  EXPECT_EQ(jumps(0, 4), kNoJump);       // missing now
   EXPECT_EQ(jumps(0, 5), kNoJump);
+  EXPECT_EQ(jumps(0, 6), kNoJump);  // missing before, but nearer than the jump
 }
 
 TEST(DepthWarper, PutsPointsWhereTheCameraSeesThem) {

@@ -180,14 +180,14 @@ ObjectMask DynamicObjects::extended_mask(const DepthImage& depth,
     if (!states[i].dynamic) continue;
     const TrackedObject& object = objects.objects[i];
     const int id = object.detection.id;
-    // Fan 2020 knows no masks from depth: Eq. (5) takes the box of an object without a mask.
+    // Fan 2020 knows masks from the network alone: Eq. (5) takes the box of any other object.
     const bool box_alone =
-        mode_.extension == ExtensionRule::kBox && object.mask_source == MaskSource::kDepth;
+        mode_.extension == ExtensionRule::kBox && object.mask_source != MaskSource::kDetected;
     const MaskArea area = box_alone ? MaskArea{} : measured.areas[static_cast<std::size_t>(id)];
     const ObjectView view{depth, objects.mask, id, object.detection.box};
     // A box used as mask cannot be extended: it already holds every pixel.
     PixelPatch patch =
-        object.mask_source == MaskSource::kBox
+        object.mask_source == MaskSource::kBox && !box_alone
             ? mask_patch(view, area)
             : extend_mask(view, area, measured.depths[i], config_.extension, known_static);
     if (outgrows_its_class(object, patch, depth)) patch = mask_patch(view, area);

@@ -149,6 +149,20 @@ TEST(DynamicObjects, ABoxInPlaceOfAMaskIsTakenWhole) {
   EXPECT_EQ(cv::countNonZero(result.mask.extended.mat == 1), 100 * 350);
 }
 
+// Fan 2020 has no other masks than the network's: Eq. (5) takes the whole box of a tracked object.
+TEST(DynamicObjects, PaperTakesTheBoxOfAnObjectThatTheNetworkMissed) {
+  for (const MaskSource source : {MaskSource::kCarried, MaskSource::kBox, MaskSource::kDepth}) {
+    Office office;
+    office.objects.objects.resize(2);
+    office.objects.objects[0].mask_source = source;
+    // The chair, which is dynamic, and hides a part of the box, is in the box, too.
+    office.objects.mask.mat(cv::Rect(200, 50, 50, 350)).setTo(0);
+    office.objects.mask.mat(cv::Rect(280, 250, 20, 150)).setTo(2);
+    const DynamicsResult result = office.judge(dynamics_mode("paper"));
+    EXPECT_EQ(cv::countNonZero(result.mask.extended.mat(cv::Rect(200, 50, 100, 350))), 100 * 350);
+  }
+}
+
 TEST(DynamicObjects, AnEmptyFrameHasNothing) {
   const DepthImage depth(cv::Mat1f(480, 640, 2.0F));
   const DynamicsResult result =

@@ -9,6 +9,8 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "stillmap/geometry/se3.hpp"
+
 namespace stillmap {
 namespace {
 
@@ -52,6 +54,16 @@ void identify_states(std::vector<ObjectState>& states,
   }
 }
 
+/// The points of features with depth, in camera coordinates.
+std::vector<Eigen::Vector3d> points_of(const Features& features, const CameraModel& camera) {
+  std::vector<Eigen::Vector3d> points;
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    const auto depth = static_cast<double>(features.sensor_depth_m[i]);
+    if (depth > 0) points.push_back(camera.unproject(features.ideal_px[i].cast<double>(), depth));
+  }
+  return points;
+}
+
 constexpr float kMostDoubt = 0.9F;  // at a score of 1
 // Not 0: wrong poses and masks make still objects seem to move.
 constexpr float kTrustOfMovers = 0.1F;
@@ -63,8 +75,11 @@ class JudgingStage final : public DynamicsStage {
                const CameraModel& camera,
                std::uint32_t seed)
       : config_(config),
+        masks_(mode.masks == MaskRule::kExact && config.search_masks ? MaskRule::kSearched
+                                                                     : mode.masks),
         jumps_(mode.jumps),
         doubts_(mode.doubts),
+        camera_(camera),
         objects_(config.objects, camera, mode),
         identities_(config.identity, objects_.categories(), camera),
         motions_(config.motion, camera),
@@ -113,26 +128,33 @@ class JudgingStage final : public DynamicsStage {
     Eigen::Isometry3d T_odometry_camera;
     Mask dynamic;
     std::int64_t number = 0;
+    std::vector<Eigen::Vector3d> points = {};  // of its features, in its camera; by kMultiView
   };
   [[nodiscard]] std::vector<PreviousDepth> previous(
       const std::optional<Eigen::Isometry3d>& T_odometry_camera) const;
+  [[nodiscard]] std::vector<PointView> nearest_views(
+      const Eigen::Isometry3d& T_odometry_camera) const;
+  [[nodiscard]] Mask excluded_from_pose(const FrameDynamics& dynamics) const;
   [[nodiscard]] std::vector<float> trust_in(const FrameObjects& objects,
                                             const std::vector<ObjectState>& states) const;
   [[nodiscard]] const PastView* past_view(std::int64_t frames_ago) const;
   [[nodiscard]] const PastView* first_since_lost() const;
 
   DynamicsConfig config_;
+  MaskRule masks_;
   JumpRule jumps_;
   bool doubts_;
+  CameraModel camera_;
   DynamicObjects objects_;
   ObjectIdentities identities_;
   MotionEstimator motions_;
   FeatureFilter filter_;
   std::optional<PastView> last_;
-  std::deque<PastView> past_;     // every few frames, the newest last
-  std::int64_t number_ = 0;       // of frames remembered
-  std::int64_t found_again_ = 0;  // number of the first frame since tracking was lost
-  FeaturesPtr features_;          // of the last frame, as they were extracted
+  std::deque<PastView> past_;            // every few frames, the newest last
+  std::int64_t number_ = 0;              // of frames remembered
+  std::int64_t found_again_ = 0;         // number of the first frame since tracking was lost
+  FeaturesPtr matchable_;                // features of the last frame
+  std::vector<Eigen::Vector3d> points_;  // of the last frame, by kMultiView
 };
 
 // The newest view that is at least `frames_ago` frames old.
@@ -164,6 +186,22 @@ std::vector<PreviousDepth> JudgingStage::previous(
   return frames;
 }
 
+// Views near in place and direction have most in common; a radian counts as a metre.
+std::vector<PointView> JudgingStage::nearest_views(
+    const Eigen::Isometry3d& T_odometry_camera) const {
+  std::vector<std::pair<double, PointView>> views;
+  for (const PastView& past : past_) {
+    const Eigen::Isometry3d T = T_odometry_camera.inverse() * past.T_odometry_camera;
+    const double distance = T.translation().norm() + rotation_angle(T.linear());
+    views.emplace_back(distance, PointView{past.points, T});
+  }
+  std::ranges::stable_sort(views, {}, &std::pair<double, PointView>::first);
+  views.resize(std::min(views.size(), static_cast<std::size_t>(config_.multi_view.views)));
+  std::vector<PointView> nearest;
+  for (auto& [distance, view] : views) nearest.push_back(std::move(view));
+  return nearest;
+}
+
 FrameDynamics JudgingStage::judge(
     const RgbdFrame& frame,
     FrameObjects objects,
@@ -178,19 +216,33 @@ FrameDynamics JudgingStage::judge(
                       frame, objects, measured.areas, measured.depths, T_odometry_camera_expected));
   dynamics.movers = identities_.movers();
   dynamics.objects = std::move(objects);
+  if (jumps_ == JumpRule::kMultiView && T_odometry_camera_expected &&
+      config_.objects.jump.enabled) {
+    dynamics.judged.mask.jumps = hiding_objects(
+        frame.depth, nearest_views(*T_odometry_camera_expected), camera_, config_.multi_view);
+  }
   const DynamicMask& mask = dynamics.judged.mask;
-  dynamics.excluded = widened(mask.all(), config_.feature_margin_px);
-  dynamics.excluded_from_pose = dynamics.excluded;
-  if (!doubts_) return dynamics;
+  if (masks_ == MaskRule::kWidened) {
+    dynamics.excluded = widened(mask.all(), config_.feature_margin_px);
+    dynamics.excluded_from_pose = excluded_from_pose(dynamics);
+  } else {
+    dynamics.excluded = mask.all();
+    dynamics.excluded_from_pose = Mask(mask.extended.mat);
+  }
+  if (masks_ != MaskRule::kSearched) dynamics.unsearched = dynamics.excluded_from_pose;
+  return dynamics;
+}
+
+// The dense map leaves out objects that have stood still since first seen, the pose does not.
+Mask JudgingStage::excluded_from_pose(const FrameDynamics& dynamics) const {
+  if (!doubts_) return dynamics.excluded;
   const std::vector<ObjectState>& states = dynamics.judged.states;
   std::array<bool, 256> resting = objects_among(dynamics.objects, motions_.standing());
   for (std::size_t i = 0; i < states.size(); ++i) {
     resting[i + 1] = resting[i + 1] && states[i].category != Category::kDynamic;
   }
-  if (std::ranges::find(resting, true) != resting.end()) {
-    dynamics.excluded_from_pose = widened(mask.all_without(resting), config_.feature_margin_px);
-  }
-  return dynamics;
+  if (std::ranges::find(resting, true) == resting.end()) return dynamics.excluded;
+  return widened(dynamics.judged.mask.all_without(resting), config_.feature_margin_px);
 }
 
 // The score of a network tells how surely it knows the class, not whether the object moves. Objects
@@ -232,17 +284,21 @@ FilteredFeatures JudgingStage::filter(
     Features features,
     const FrameDynamics& dynamics,
     const std::optional<Eigen::Isometry3d>& T_odometry_camera_expected) {
-  const FeaturesPtr current = std::make_shared<const Features>(std::move(features));
-  FeatureScene scene{*current,
+  FeatureScene scene{features,
                      frame.depth,
                      dynamic_boxes(dynamics.judged.states),
-                     std::exchange(features_, current),
+                     {},
+                     std::exchange(matchable_, nullptr),
                      std::nullopt,
                      frame.id};
+  if (masks_ == MaskRule::kSearched) scene.masks = dynamics.judged.mask.extended;
   if (T_odometry_camera_expected && last_) {
     scene.T_current_previous = T_odometry_camera_expected->inverse() * last_->T_odometry_camera;
   }
-  return filter_.filter(scene);
+  FilteredFeatures filtered = filter_.filter(scene);
+  matchable_ = filtered.matchable;
+  if (jumps_ == JumpRule::kMultiView) points_ = points_of(filtered.features, camera_);
+  return filtered;
 }
 
 std::vector<ObjectState> JudgingStage::with_motion(const RgbdFrame& frame,
@@ -262,7 +318,11 @@ void JudgingStage::remember(const RgbdFrame& frame,
   // A third of the age's precision is enough, and a third of the memory.
   const int step = std::max(1, config_.compare_frames / 3);
   if ((number_ - found_again_) % step == 0) {
-    past_.push_back({frame.depth, T_odometry_camera, dynamics.judged.mask.all(), number_});
+    past_.push_back({frame.depth,
+                     T_odometry_camera,
+                     dynamics.judged.mask.all(),
+                     number_,
+                     std::exchange(points_, {})});
   }
   ++number_;
   const std::int64_t oldest = number_ - std::int64_t{4} * config_.compare_frames - step;
@@ -271,7 +331,7 @@ void JudgingStage::remember(const RgbdFrame& frame,
 
 void JudgingStage::forget() {
   last_.reset();
-  features_.reset();
+  matchable_.reset();
   found_again_ = number_;
 }
 
@@ -306,7 +366,9 @@ FilteredFeatures DynamicsStage::filter(
     Features features,
     const FrameDynamics& /*dynamics*/,
     const std::optional<Eigen::Isometry3d>& /*T_odometry_camera_expected*/) {
-  return {std::move(features), {}, {}};
+  FilteredFeatures all;
+  all.features = std::move(features);
+  return all;
 }
 
 std::vector<ObjectState> DynamicsStage::with_motion(const RgbdFrame& /*frame*/,

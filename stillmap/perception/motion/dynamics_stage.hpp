@@ -12,6 +12,7 @@
 #include "stillmap/perception/motion/feature_filter.hpp"
 #include "stillmap/perception/motion/modes.hpp"
 #include "stillmap/perception/motion/motion_estimator.hpp"
+#include "stillmap/perception/motion/multi_view.hpp"
 #include "stillmap/perception/objects/object_identities.hpp"
 #include "stillmap/perception/objects/object_tracker.hpp"
 
@@ -20,9 +21,11 @@ namespace stillmap {
 struct DynamicsConfig {
   std::string mode = default_dynamics_mode();
   double feature_margin_px = 4;
+  bool search_masks = false;
   int compare_frames = 20;
   bool fill_boxes = true;
   DynamicObjectsConfig objects;
+  MultiViewConfig multi_view;
   ObjectTrackerConfig tracker;
   IdentityConfig identity;
   MotionStateConfig motion;
@@ -45,6 +48,11 @@ struct DynamicsConfig {
           self.feature_margin_px,
           common_setting(
               FieldInfo{"distance that features keep from the pixels that move", "px", 0, 50}));
+    visit("search_masks",
+          self.search_masks,
+          FieldInfo{
+              "paper: whether features are looked for on masks, too, judged with the others and "
+              "dropped then, as in Fan 2020; else all tracking.features are off the masks"});
     visit("compare_frames",
           self.compare_frames,
           common_setting(FieldInfo{"full: age of the depth that a frame is compared with; twice "
@@ -57,6 +65,7 @@ struct DynamicsConfig {
           FieldInfo{"whether an object that the network misses is filled in from the frames before "
                     "and after"});
     DynamicObjectsConfig::fields(self.objects, visit);
+    visit.group("multi_view", self.multi_view);
     visit.group("tracker", self.tracker);
     visit.group("identity", self.identity);
     visit.group("motion", self.motion);
@@ -68,11 +77,16 @@ struct DynamicsConfig {
 struct FrameDynamics {
   FrameObjects objects;   ///< with the tracks of the ObjectTracker
   DynamicsResult judged;  ///< `judged.states` in the order of the objects, with lasting tracks
-  Mask excluded;  ///< pixels that are not static surface for the map: `judged.mask` and a margin
   std::vector<MoverSighting> movers;  ///< people, and what else moves by itself
-  /// Pixels that no feature may have: `excluded` without objects that have stood still since first
-  /// seen.
+  /// Pixels that are not static surface for the map: `judged.mask` and, by MaskRule::kWidened, a
+  /// margin.
+  Mask excluded;
+  /// Pixels that no feature may have. By MaskRule::kWidened `excluded` without objects that have
+  /// stood still since first seen; else the extended masks.
   Mask excluded_from_pose;
+  /// Pixels on which no feature is looked for: `excluded_from_pose`, or none if filter() drops the
+  /// features on it.
+  Mask unsearched;
 };
 
 /// The excluded pixels on dynamic objects: whether they are static is only doubted.
@@ -110,8 +124,8 @@ class DynamicsStage {
   /// there are none.
   [[nodiscard]] virtual std::optional<DoubtedPixels> doubted(const FrameDynamics& dynamics) const;
 
-  /// The features, which are all off `dynamics.excluded`, that may be used for the pose. The next
-  /// frame is compared with all of them.
+  /// The features, which are all off `dynamics.unsearched`, that may be used for the pose.
+  /// Remembers those that the next frame is compared with.
   [[nodiscard]] virtual FilteredFeatures filter(
       const RgbdFrame& frame,
       Features features,

@@ -2,6 +2,7 @@
 #include "stillmap/perception/motion/dynamics_stage.hpp"
 
 #include <gtest/gtest.h>
+#include <opencv2/core.hpp>
 
 #include "stillmap/geometry/se3.hpp"
 
@@ -115,7 +116,7 @@ TEST_F(DoubtedPerson, AThingThatHasStoodThereIsStaticForThePoseNotForTheMap) {
 }
 
 TEST(DynamicsStage, OtherModesDoubtNothing) {
-  for (const char* mode : {"off", "mask", "paper"}) {
+  for (const char* mode : {"off", "mask", "ds-slam", "dynaslam", "paper"}) {
     DynamicsConfig config;
     config.mode = mode;
     const std::unique_ptr<DynamicsStage> stage = make_dynamics_stage(config, small_camera(), 0);
@@ -124,6 +125,53 @@ TEST(DynamicsStage, OtherModesDoubtNothing) {
     const FrameDynamics dynamics =
         stage->judge(frame, objects, stage->measure(frame, objects), turned(0));
     EXPECT_FALSE(stage->doubted(dynamics)) << mode;
+  }
+}
+
+// Without detections somebody enters; points of earlier frames on the wall are hidden then.
+TEST(DynamicsStage, DynaslamFindsWhatHidesEarlierPoints) {
+  DynamicsConfig config;
+  config.mode = "dynaslam";
+  const std::unique_ptr<DynamicsStage> stage = make_dynamics_stage(config, small_camera(), 0);
+  Features points;
+  for (int i = 0; i < 140 * 100; i += 37) {
+    points.raw_px.emplace_back(10 + i % 140, 10 + i / 140);
+    points.sensor_depth_m.push_back(3.0F);
+    points.depth_m.push_back(3.0F);
+    points.level.push_back(0);
+    points.angle_deg.push_back(0);
+    points.descriptors.emplace_back();
+  }
+  points.ideal_px = points.px = points.raw_px;
+  const auto look = [&](bool with_person) {
+    const RgbdFrame frame = wall(with_person);
+    FrameDynamics dynamics = stage->judge(frame, {}, stage->measure(frame, {}), turned(0));
+    (void)stage->filter(frame, points, dynamics, turned(0));
+    stage->remember(frame, turned(0), dynamics);
+    return dynamics;
+  };
+  for (int k = 0; k < 8; ++k) EXPECT_FALSE(person_is_out(look(false)));
+  EXPECT_TRUE(person_is_out(look(true)));
+}
+
+// Fan 2020, Eqs. (4) and (17): no margin; features are not dropped at depth jumps.
+TEST(DynamicsStage, PaperLeavesOutExactlyMasksAndJumps) {
+  for (const bool searched : {false, true}) {
+    DynamicsConfig config;
+    config.mode = "paper";
+    config.search_masks = searched;
+    config.objects.extension.whole_box_px = 0;
+    const std::unique_ptr<DynamicsStage> stage = make_dynamics_stage(config, small_camera(), 0);
+    const RgbdFrame before = wall(false);
+    stage->remember(before, turned(0), stage->judge(before, {}, {}, turned(0)));
+    RgbdFrame frame = wall(true);
+    frame.depth.mat(0, 0) = 4.1F;  // farther than a metre behind the wall
+    const FrameObjects objects = person_found();
+    const FrameDynamics dynamics =
+        stage->judge(frame, objects, stage->measure(frame, objects), turned(0));
+    EXPECT_EQ(cv::countNonZero(dynamics.excluded.mat), kPerson.area() + 1);
+    EXPECT_EQ(cv::countNonZero(dynamics.excluded_from_pose.mat), kPerson.area());
+    EXPECT_EQ(dynamics.unsearched.empty(), searched);
   }
 }
 

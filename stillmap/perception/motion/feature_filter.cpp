@@ -2,6 +2,7 @@
 #include "stillmap/perception/motion/feature_filter.hpp"
 
 #include <algorithm>
+#include <memory>
 
 #include "stillmap/core/random.hpp"
 #include "stillmap/perception/motion/consecutive_matches.hpp"
@@ -34,21 +35,11 @@ PointMatch point_match(const Features& previous, const Features& current, const 
           static_cast<double>(current.sensor_depth_m[m.feature])};
 }
 
-using MatchVerdicts = std::vector<std::optional<MatchVerdict>>;
-
-/// The verdict on a feature in the box of a dynamic object. A feature without a match verdict, as
-/// every new feature, is kept: when people fill the image nearly all features are in boxes, and
-/// dropping them would lose tracking.
-FeatureVerdict verdict_in_box(const std::optional<MatchVerdict>& match_verdict) {
-  switch (match_verdict.value_or(MatchVerdict::kUnknown)) {
-    case MatchVerdict::kStatic:
-      return FeatureVerdict::kStaticInBox;
-    case MatchVerdict::kDynamic:
-      return FeatureVerdict::kDynamic;
-    case MatchVerdict::kUnknown:
-      break;
-  }
-  return FeatureVerdict::kStable;
+/// The id of the mask at a pixel; 0 for none.
+std::uint8_t mask_at(const ObjectMask& masks, const Eigen::Vector2f& raw_px) {
+  if (masks.mat.empty()) return 0;
+  const Eigen::Vector2i px = raw_px.array().round().cast<int>();
+  return masks.mat(px.y(), px.x());
 }
 
 }  // namespace
@@ -59,6 +50,7 @@ FeatureFilter::FeatureFilter(const FeatureFilterConfig& config,
                              std::uint32_t seed)
     : config_(config),
       camera_(camera),
+      rule_(mode.static_matches),
       drops_missing_depth_(mode.depth_stability == DepthStabilityRule::kDrop),
       seed_(seed) {
   if (mode.depth_stability == DepthStabilityRule::kNone) config_.depth_stability.enabled = false;
@@ -68,17 +60,39 @@ FeatureFilter::FeatureFilter(const FeatureFilterConfig& config,
   }
   const bool asked =
       mode.static_matches == StaticMatchRule::kJudge ||
+      mode.static_matches == StaticMatchRule::kObjects ||
       (mode.static_matches == StaticMatchRule::kConfigured && config_.static_matches.in_full);
   if (!asked) config_.static_matches.enabled = false;
+  if (mode.static_matches == StaticMatchRule::kObjects) {
+    config_.static_matches.epipolar_px = config_.static_matches.inlier_px;
+  }
 }
 
 FilteredFeatures FeatureFilter::filter(const FeatureScene& scene) const {
-  const std::vector<FeatureVerdict> verdicts = judge(scene);
   FilteredFeatures filtered;
+  std::vector<FeatureVerdict> verdicts = judge_depths(scene);
+  std::array<bool, 256> moving;
+  moving.fill(true);
+  if (config_.static_matches.enabled) {
+    const Matchable current = matchable(scene.features, verdicts);
+    filtered.matchable = current.features;
+    const std::vector<std::uint8_t> boxed = boxed_features(scene);
+    const JudgedMatches judged = judge_matches(scene, current, boxed);
+    filtered.judge = judged.judge;
+    if (rule_ == StaticMatchRule::kObjects) moving = moving_masks(scene, judged);
+    for (std::size_t i = 0; i < verdicts.size(); ++i) {
+      const bool asked = rule_ != StaticMatchRule::kObjects && boxed[i] != 0 &&
+                         verdicts[i] == FeatureVerdict::kStable;
+      if (asked) verdicts[i] = verdict_in_box(judged.verdicts[i]);
+    }
+  }
   std::vector<std::uint8_t> keep(verdicts.size(), 0);
   for (std::size_t i = 0; i < verdicts.size(); ++i) {
+    const Eigen::Vector2f& px = scene.features.raw_px[i];
+    const std::uint8_t id = mask_at(scene.masks, px);
+    if (id != 0 && moving[id]) verdicts[i] = FeatureVerdict::kDynamic;
     if (dropped(verdicts[i])) {
-      filtered.dropped.push_back({scene.features.raw_px[i], verdicts[i]});
+      filtered.dropped.push_back({px, verdicts[i]});
     } else {
       keep[i] = 1;
       filtered.verdicts.push_back(verdicts[i]);
@@ -93,53 +107,93 @@ FilteredFeatures FeatureFilter::filter(const FeatureScene& scene) const {
   return filtered;
 }
 
-std::vector<FeatureVerdict> FeatureFilter::judge(const FeatureScene& scene) const {
+std::vector<FeatureVerdict> FeatureFilter::judge_depths(const FeatureScene& scene) const {
   std::vector<FeatureVerdict> verdicts(scene.features.size(), FeatureVerdict::kStable);
-  if (config_.static_matches.enabled) {
-    const std::vector<std::uint8_t> boxed = boxed_features(scene);
-    const MatchVerdicts match_verdicts = judge_boxes(scene, boxed);
-    for (std::size_t i = 0; i < verdicts.size(); ++i) {
-      if (boxed[i] != 0) verdicts[i] = verdict_in_box(match_verdicts[i]);
-    }
-  }
   if (!config_.depth_stability.enabled) return verdicts;
   const std::vector<DepthStability> depths =
       judge_depth_stability(scene.depth, scene.features.raw_px, config_.depth_stability);
   for (std::size_t i = 0; i < verdicts.size(); ++i) {
-    if (verdicts[i] == FeatureVerdict::kDynamic) continue;
     if (depths[i] == DepthStability::kMissing) verdicts[i] = FeatureVerdict::kMissingDepth;
     if (depths[i] == DepthStability::kUnstable) verdicts[i] = FeatureVerdict::kUnstableDepth;
   }
   return verdicts;
 }
 
-std::vector<std::optional<MatchVerdict>> FeatureFilter::judge_boxes(
-    const FeatureScene& scene, const std::vector<std::uint8_t>& boxed) const {
-  std::vector<std::optional<MatchVerdict>> match_verdicts(scene.features.size());
-  const bool any_boxed = std::ranges::find(boxed, std::uint8_t{1}) != boxed.end();
-  if (scene.previous == nullptr || !any_boxed) return match_verdicts;
+FeatureFilter::Matchable FeatureFilter::matchable(
+    const Features& features, const std::vector<FeatureVerdict>& by_depth) const {
+  Matchable stable;
+  std::vector<std::uint8_t> keep(by_depth.size(), 0);
+  for (std::size_t i = 0; i < by_depth.size(); ++i) {
+    if (by_depth[i] != FeatureVerdict::kStable) continue;
+    keep[i] = 1;
+    stable.place.push_back(i);
+  }
+  stable.features = std::make_shared<const Features>(select_features(features, keep, camera_));
+  return stable;
+}
+
+FeatureFilter::JudgedMatches FeatureFilter::judge_matches(
+    const FeatureScene& scene,
+    const Matchable& current,
+    const std::vector<std::uint8_t>& boxed) const {
+  JudgedMatches judged{std::vector<MatchVerdict>(boxed.size(), MatchVerdict::kUnknown), {}};
+  if (std::ranges::find(boxed, std::uint8_t{1}) == boxed.end()) return judged;
+  judged.judge = MatchJudge::kNothing;
+  if (scene.previous == nullptr) return judged;
   const std::vector<FeatureMatch> matches = match_consecutive(*scene.previous,
-                                                              scene.features,
+                                                              *current.features,
                                                               camera_,
                                                               scene.T_current_previous,
                                                               config_.static_matches.search_px,
                                                               config_.static_matches.match);
   std::vector<PointMatch> environment;
   for (const FeatureMatch& match : matches) {
-    if (boxed[match.feature] != 0) continue;
-    environment.push_back(point_match(*scene.previous, scene.features, match));
+    if (boxed[current.place[match.feature]] != 0) continue;
+    environment.push_back(point_match(*scene.previous, *current.features, match));
   }
   std::mt19937 rng = rng_for(seed_, scene.frame, RandomPurpose::kEpipolarGeometry);
   const TwoViewGeometry geometry = estimate_two_view(
       camera_, environment, scene.T_current_previous, config_.static_matches, rng);
+  judged.judge = geometry.judge;
   for (const FeatureMatch& match : matches) {
-    if (boxed[match.feature] == 0) continue;
-    match_verdicts[match.feature] = judge_match(camera_,
-                                                geometry,
-                                                point_match(*scene.previous, scene.features, match),
-                                                config_.static_matches);
+    const std::size_t i = current.place[match.feature];
+    if (boxed[i] == 0) continue;
+    judged.verdicts[i] = judge_match(camera_,
+                                     geometry,
+                                     point_match(*scene.previous, *current.features, match),
+                                     config_.static_matches);
   }
-  return match_verdicts;
+  return judged;
+}
+
+// Yu 2018, section III-C. An object without judged matches counts as moving.
+std::array<bool, 256> FeatureFilter::moving_masks(const FeatureScene& scene,
+                                                  const JudgedMatches& judged) const {
+  std::array<int, 256> moved{}, still{};
+  for (std::size_t i = 0; i < judged.verdicts.size(); ++i) {
+    const std::uint8_t id = mask_at(scene.masks, scene.features.raw_px[i]);
+    if (judged.verdicts[i] == MatchVerdict::kDynamic) ++moved[id];
+    if (judged.verdicts[i] == MatchVerdict::kStatic) ++still[id];
+  }
+  std::array<bool, 256> moving{};
+  for (std::size_t id = 0; id < moving.size(); ++id) {
+    const double matches = moved[id] + still[id];
+    moving[id] = moved[id] >= config_.static_matches.moving_share * matches;
+  }
+  return moving;
+}
+
+FeatureVerdict FeatureFilter::verdict_in_box(MatchVerdict match_verdict) const {
+  switch (match_verdict) {
+    case MatchVerdict::kStatic:
+      return FeatureVerdict::kStaticInBox;
+    case MatchVerdict::kDynamic:
+      return FeatureVerdict::kDynamic;
+    case MatchVerdict::kUnknown:
+      break;
+  }
+  return config_.static_matches.unmatched == "drop" ? FeatureVerdict::kDynamic
+                                                    : FeatureVerdict::kStable;
 }
 
 bool FeatureFilter::dropped(FeatureVerdict verdict) const {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -30,6 +32,8 @@ struct FilteredFeatures {
   Features features;
   std::vector<FeatureVerdict> verdicts;  ///< of `features`; empty if the mode judges none
   std::vector<RejectedFeature> dropped;  ///< the features that were dropped
+  FeaturesPtr matchable;  ///< those to be matched with the next frame's; null if none are matched
+  MatchJudge judge = MatchJudge::kNotAsked;  ///< what matches in boxes were judged by
 };
 
 /// The features of a frame, with the input for judging them.
@@ -37,7 +41,8 @@ struct FeatureScene {
   const Features& features;
   const DepthImage& depth;
   std::vector<PixelBox> dynamic_boxes;
-  FeaturesPtr previous;  ///< extracted features of the previous frame; may be null
+  ObjectMask masks;      ///< of dynamic objects, if features may be on them; else empty
+  FeaturesPtr previous;  ///< matchable features of the previous frame; may be null
   std::optional<Eigen::Isometry3d> T_current_previous;  ///< predicted
   FrameId frame;
 };
@@ -53,10 +58,10 @@ struct FeatureFilterConfig {
   }
 };
 
-/// Judges features by their depth (Fan 2020, section III-E) and, in the boxes of dynamic objects,
-/// by their motion (section III-F), according to the rules of the mode. A feature in a box without
-/// a match in the previous frame is kept. Keeps no state between frames; the same input and seed
-/// give the same bits.
+/// Judges features by their depth (Fan 2020, section III-E); then those of stable depth, in the
+/// boxes of dynamic objects, by their motion since the previous frame (section III-F); and drops
+/// those on masks. The rules of the mode say which of this is done. Keeps no state between frames;
+/// the same input and seed give the same bits.
 class FeatureFilter {
  public:
   FeatureFilter(const FeatureFilterConfig& config,
@@ -67,14 +72,30 @@ class FeatureFilter {
   [[nodiscard]] FilteredFeatures filter(const FeatureScene& scene) const;
 
  private:
-  [[nodiscard]] std::vector<FeatureVerdict> judge(const FeatureScene& scene) const;
-  [[nodiscard]] std::vector<std::optional<MatchVerdict>> judge_boxes(
-      const FeatureScene& scene, const std::vector<std::uint8_t>& boxed) const;
+  /// Features of stable depth.
+  struct Matchable {
+    FeaturesPtr features;
+    std::vector<std::size_t> place;  // of each among all features of the frame
+  };
+  struct JudgedMatches {
+    std::vector<MatchVerdict> verdicts;  // of all features; kUnknown without a match in a box
+    MatchJudge judge = MatchJudge::kNotAsked;
+  };
+  [[nodiscard]] std::vector<FeatureVerdict> judge_depths(const FeatureScene& scene) const;
+  [[nodiscard]] Matchable matchable(const Features& features,
+                                    const std::vector<FeatureVerdict>& by_depth) const;
+  [[nodiscard]] JudgedMatches judge_matches(const FeatureScene& scene,
+                                            const Matchable& current,
+                                            const std::vector<std::uint8_t>& boxed) const;
+  [[nodiscard]] FeatureVerdict verdict_in_box(MatchVerdict match_verdict) const;
+  [[nodiscard]] std::array<bool, 256> moving_masks(const FeatureScene& scene,
+                                                   const JudgedMatches& judged) const;
   [[nodiscard]] bool dropped(FeatureVerdict verdict) const;
   [[nodiscard]] bool without_depth(FeatureVerdict verdict) const;
 
   FeatureFilterConfig config_;
   CameraModel camera_;
+  StaticMatchRule rule_;
   bool drops_missing_depth_;
   std::uint32_t seed_;
 };

@@ -75,6 +75,7 @@ FeatureScene scene_of(const TwoFrames& two) {
   return {two.current,
           two.depth,
           {kBox},
+          {},
           std::make_shared<const Features>(two.previous),
           two.T_current_previous,
           FrameId(3)};
@@ -144,12 +145,89 @@ TEST(FeatureFilter, WithoutStaticMatchesWhatMovesStays) {
   EXPECT_TRUE(filtered.dropped.empty());
 }
 
-TEST(FeatureFilter, WhatHasNoMatchInTheFrameBeforeStays) {
+TEST(FeatureFilter, WhatHasNoMatchInTheFrameBeforeIsTreatedAsTold) {
   const TwoFrames two = two_frames();
   FeatureScene scene = scene_of(two);
   scene.previous = nullptr;
-  const FeatureFilter filter(without_depth_stability(), two.camera, dynamics_mode("paper"), 1);
-  EXPECT_EQ(filter.filter(scene).features.size(), two.current.size());
+  FeatureFilterConfig config = without_depth_stability();
+  config.static_matches.unmatched = "keep";
+  const FeatureFilter keeping(config, two.camera, dynamics_mode("paper"), 1);
+  EXPECT_EQ(keeping.filter(scene).features.size(), two.current.size());
+  config.static_matches.unmatched = "drop";
+  const FeatureFilter dropping(config, two.camera, dynamics_mode("paper"), 1);
+  const FilteredFeatures dropped = dropping.filter(scene);
+  EXPECT_EQ(dropped.features.size(), static_cast<std::size_t>(kRoomFeatures));
+  EXPECT_EQ(dropped.judge, MatchJudge::kNothing);
+}
+
+TEST(FeatureFilter, WhatIsOnAMaskIsDroppedHoweverItMoves) {
+  const TwoFrames two = two_frames();
+  FeatureScene scene = scene_of(two);
+  scene.masks = ObjectMask(cv::Mat1b(480, 640, std::uint8_t{0}));
+  scene.masks.mat(cv::Rect(400, 100, 160, 280)).setTo(1);
+  const FilteredFeatures filtered =
+      FeatureFilter(without_depth_stability(), two.camera, dynamics_mode("paper"), 1).filter(scene);
+  EXPECT_EQ(filtered.features.size(), static_cast<std::size_t>(kRoomFeatures));
+}
+
+// Fan 2020 has Eq. (14) before Eqs. (15)-(17): half of the room shifts by ten pixels, as at rims,
+// where the depth is unstable. With these matches the matrix would be another.
+TEST(FeatureFilter, TheMatrixComesFromMatchesOfStableDepth) {
+  TwoFrames two = two_frames();
+  TestDice dice(17);
+  for (float& z : two.depth.mat) z += dice.uniform(-0.004F, 0.004F);
+  for (std::size_t i = 0; i < 66; ++i) {
+    const cv::Point pixel(cvRound(two.current.raw_px[i].x()), cvRound(two.current.raw_px[i].y()));
+    two.depth.mat(pixel + cv::Point(1, 0)) = 4.0F;
+    two.previous.raw_px[i].y() += 10.0F;
+    two.previous.ideal_px[i].y() += 10.0F;
+    two.previous.px[i].y() += 10.0F;
+  }
+  two.previous = gridded(two.previous, two.camera);
+  FeatureFilterConfig config;
+  config.static_matches.iterations = 5000;  // enough to find the majority
+  const auto in_box = [&](const FilteredFeatures& filtered) {
+    return count(filtered, FeatureVerdict::kStaticInBox);
+  };
+  const FilteredFeatures judged =
+      FeatureFilter(config, two.camera, dynamics_mode("paper"), 1).filter(scene_of(two));
+  EXPECT_EQ(judged.judge, MatchJudge::kFundamental);
+  EXPECT_GE(in_box(judged), 18U);  // some are of unstable depth by chance
+  ASSERT_TRUE(judged.matchable);
+  EXPECT_EQ(judged.matchable->size(),
+            two.current.size() - count(judged, FeatureVerdict::kUnstableDepth));
+  config.depth_stability.enabled = false;
+  EXPECT_LT(
+      in_box(FeatureFilter(config, two.camera, dynamics_mode("paper"), 1).filter(scene_of(two))),
+      10U);
+}
+
+/// Masks of two objects that share the box's features: the moving half is object 1, the other 2.
+ObjectMask masks_of_two(const TwoFrames& two) {
+  ObjectMask masks(cv::Mat1b(480, 640, std::uint8_t{0}));
+  for (std::size_t i = 0; i < static_cast<std::size_t>(kBoxFeatures); ++i) {
+    const Eigen::Vector2f& px = two.current.raw_px[kRoomFeatures + i];
+    masks.mat(cv::Point(cvRound(px.x()), cvRound(px.y()))) = i < kBoxFeatures / 2 ? 1 : 2;
+  }
+  return masks;
+}
+
+// Yu 2018: the features of an object that moves are dropped, all of them, and no others.
+TEST(FeatureFilter, DsSlamDropsTheFeaturesOfObjectsThatMove) {
+  const TwoFrames two = two_frames();
+  FeatureScene scene = scene_of(two);
+  scene.masks = masks_of_two(two);
+  const FeatureFilter filter({}, two.camera, dynamics_mode("ds-slam"), 1);
+  const FilteredFeatures filtered = filter.filter(scene);
+  EXPECT_EQ(filtered.judge, MatchJudge::kFundamental);
+  EXPECT_EQ(filtered.dropped.size(), static_cast<std::size_t>(kBoxFeatures / 2));
+  for (const RejectedFeature& dropped : filtered.dropped) {
+    EXPECT_EQ(scene.masks.mat(cv::Point(cvRound(dropped.raw_px.x()), cvRound(dropped.raw_px.y()))),
+              1);
+  }
+  // Without a frame before, all objects of dynamic classes count as moving.
+  scene.previous = nullptr;
+  EXPECT_EQ(filter.filter(scene).dropped.size(), static_cast<std::size_t>(kBoxFeatures));
 }
 
 TEST(FeatureFilter, FullJudgesBoxesOnlyWhenTold) {

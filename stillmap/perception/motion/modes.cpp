@@ -13,10 +13,12 @@ namespace {
 // A mode is a row of this table and nothing else. A mode that needs a new rule adds an enumerator
 // to the rule's type and a branch to the stage that reads it.
 //
-// `off` and `mask` remove nothing from the map: they are for comparison. `paper` has the thresholds
-// of Fan 2020. In `full` the threshold of depth edges grows with depth, as the sensor's noise does,
-// because a fixed threshold removes far walls. Instead of islands, which are mostly chair legs or
-// surface seen between people, `full` removes points that later views see through.
+// `off` and `mask` remove nothing from the map: they are for comparison. `ds-slam` and `dynaslam`
+// treat motion as their articles describe it, inside this system; they are no ports. `paper` has
+// the rules and thresholds of Fan 2020. In `full` the threshold of depth edges grows with depth, as
+// the sensor's noise does, because a fixed threshold removes far walls. Instead of islands, which
+// are mostly chair legs or surface seen between people, `full` removes points that later views see
+// through.
 constexpr std::array kModes = {
     DynamicsMode{.name = "off",
                  .meaning = "motion is ignored: SLAM for a static world",
@@ -25,15 +27,29 @@ constexpr std::array kModes = {
     DynamicsMode{.name = "mask",
                  .meaning = "the network's masks of dynamic classes are left out",
                  .cloud = {.edges = "off", .islands = "off", .free_space = "off"}},
+    DynamicsMode{.name = "ds-slam",
+                 .meaning = "people whose points leave their epipolar lines, after Yu et al. 2018",
+                 .masks = MaskRule::kSearched,
+                 .static_matches = StaticMatchRule::kObjects,
+                 .cloud = {.edges = "off", .islands = "off", .free_space = "off"}},
+    DynamicsMode{.name = "dynaslam",
+                 .meaning = "masks and what hides earlier points, after Bescos et al. 2018",
+                 .jumps = JumpRule::kMultiView,
+                 .cloud = {.edges = "off", .islands = "off", .free_space = "off"}},
     DynamicsMode{.name = "paper",
                  .meaning = "the method of Fan et al. 2020",
                  .extension = ExtensionRule::kBox,
+                 .masks = MaskRule::kExact,
                  .interaction = true,
                  .jumps = JumpRule::kPreviousFrame,
                  .fills_after_one_sighting = true,
                  .depth_stability = DepthStabilityRule::kDrop,
                  .static_matches = StaticMatchRule::kJudge,
-                 .cloud = {.edges = "fixed", .islands = "on", .free_space = "off"}},
+                 .cloud = {.edges = "fixed",
+                           .islands = "on",
+                           .free_space = "off",
+                           .view_frames = "keyframes",
+                           .points = "pixels"}},
     DynamicsMode{
         .name = "full",
         .meaning =

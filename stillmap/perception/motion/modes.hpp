@@ -16,11 +16,25 @@ enum class ExtensionRule : std::uint8_t {
   kConfigured,  ///< as dynamics.extension.variant says
 };
 
+/// How the extended masks of dynamic objects are applied.
+enum class MaskRule : std::uint8_t {
+  /// Features are looked for off masks and depth jumps, dynamics.feature_margin_px away from them.
+  /// The map leaves the same pixels out.
+  kWidened,
+  /// Features are looked for off masks, the map leaves out masks and depth jumps, both without a
+  /// margin (Fan 2020). With dynamics.search_masks as kSearched.
+  kExact,
+  /// As kExact, but features are looked for everywhere and judged; then those on masks are dropped.
+  kSearched,
+};
+
 /// How depth jumps are found.
 enum class JumpRule : std::uint8_t {
   kNone,
-  kPreviousFrame,  ///< against the previous frame, pixel by pixel (Fan 2020, Eqs. (6)-(7))
-  kWarpedFrames,   ///< against earlier frames warped to the predicted pose
+  /// against the previous frame, pixel by pixel, missing depth being 0 (Fan 2020, Eqs. (6)-(7))
+  kPreviousFrame,
+  kWarpedFrames,  ///< against earlier frames warped to the predicted pose
+  kMultiView,     ///< points of earlier frames that are seen through, grown in depth (Bescos 2018)
 };
 
 /// The treatment of features whose depth is missing or unstable (Fan 2020, section III-E).
@@ -30,23 +44,24 @@ enum class DepthStabilityRule : std::uint8_t {
   kConfigured,  ///< as dynamics.depth_stability says; features of missing depth stay
 };
 
-/// Whether matches in the boxes of dynamic objects are judged by epipolar geometry (Fan 2020,
-/// section III-F).
+/// How matches in the boxes of dynamic objects are judged by epipolar geometry.
 enum class StaticMatchRule : std::uint8_t {
   kNone,
-  kJudge,
+  kJudge,       ///< each by itself (Fan 2020, section III-F)
+  kObjects,     ///< an object whose matches moved in part is dynamic, others are not (Yu 2018)
   kConfigured,  ///< as dynamics.static_matches.in_full says
 };
 
-/// The rules for removal from the depth of a view, and later from the dense map. The texts are the
-/// values of cloud.edges, cloud.islands, cloud.free_space and cloud.missed_people that replace
-/// "by_mode".
+/// The rules of the dense map: what makes a view, what is removed from its depth and later from the
+/// map. The texts are the values of the settings in the group `cloud` that replace "by_mode".
 struct CloudRules {
   std::string_view edges;       ///< depth edges, Fan 2020, Eqs. (11)-(12)
   std::string_view islands;     ///< small patches of depth, Fan 2020, Eq. (13)
   std::string_view free_space;  ///< points that later views see through
   /// Surface where a person that the network missed in the view's frame must have been.
   std::string_view missed_people = "off";
+  std::string_view view_frames = "all";  ///< frames that may become views, Fan 2020, Eq. (1)
+  std::string_view points = "cells";     ///< points of a view
 };
 
 /// A treatment of motion: one row of the table in modes.cpp. Each stage reads its own column and
@@ -56,6 +71,7 @@ struct DynamicsMode {
   std::string_view meaning;  ///< for help texts
   bool judges = true;        ///< false: motion is ignored
   ExtensionRule extension = ExtensionRule::kNone;
+  MaskRule masks = MaskRule::kWidened;
   /// an object that a person interacts with is dynamic (Fan 2020, Eqs. (8)-(9))
   bool interaction = false;
   JumpRule jumps = JumpRule::kNone;

@@ -19,6 +19,7 @@ TwoViewGeometry guessed_geometry(const CameraModel& camera,
                                  const std::optional<Eigen::Isometry3d>& T) {
   TwoViewGeometry geometry;
   if (!T) return geometry;
+  geometry.judge = MatchJudge::kPrediction;
   geometry.T = T;
   if (T->translation().norm() >= kShortGuessM) {
     geometry.F = fundamental_of_motion(camera, *T);
@@ -64,6 +65,22 @@ MatchVerdict verdict(bool still) {
 
 }  // namespace
 
+std::string_view match_judge_name(MatchJudge judge) {
+  switch (judge) {
+    case MatchJudge::kNotAsked:
+      break;
+    case MatchJudge::kNothing:
+      return "nothing";
+    case MatchJudge::kFundamental:
+      return "fundamental matrix";
+    case MatchJudge::kRotation:
+      return "rotation";
+    case MatchJudge::kPrediction:
+      return "prediction";
+  }
+  return "not asked";
+}
+
 TwoViewGeometry estimate_two_view(
     const CameraModel& camera,
     std::span<const PointMatch> environment,
@@ -74,8 +91,10 @@ TwoViewGeometry estimate_two_view(
     return guessed_geometry(camera, expected_T_current_previous);
   }
   TwoViewGeometry geometry;
-  geometry.estimated = true;
-  geometry.R = pure_rotation(camera, environment, config.min_parallax_px);
+  geometry.judge = MatchJudge::kRotation;
+  if (config.min_parallax_px > 0) {
+    geometry.R = pure_rotation(camera, environment, config.min_parallax_px);
+  }
   std::vector<PointMatch> fitting(environment.begin(), environment.end());
   if (!geometry.R) {
     // The bound is that of a good match, independent of the bound for judged matches.
@@ -84,7 +103,9 @@ TwoViewGeometry estimate_two_view(
     if (!estimate || estimate->inliers < config.min_environment) {
       return guessed_geometry(camera, expected_T_current_previous);
     }
+    geometry.judge = MatchJudge::kFundamental;
     geometry.F = estimate->F;
+    if (!config.motion_check) return geometry;
     fitting.clear();
     for (std::size_t i = 0; i < environment.size(); ++i) {
       if (estimate->inlier[i] != 0) fitting.push_back(environment[i]);
@@ -100,7 +121,7 @@ MatchVerdict judge_match(const CameraModel& camera,
                          const TwoViewGeometry& geometry,
                          const PointMatch& match,
                          const StaticMatchesConfig& config) {
-  const double line_px = geometry.estimated ? config.epipolar_px : config.reprojection_px;
+  const double line_px = geometry.estimated() ? config.epipolar_px : config.reprojection_px;
   if (geometry.F && epipolar_distance(*geometry.F, match) > line_px) return MatchVerdict::kDynamic;
   if (geometry.T && match.previous_depth_m > 0) {
     return verdict(stands_still(camera, *geometry.T, match, config));

@@ -5,12 +5,14 @@
 #include <optional>
 #include <random>
 #include <span>
+#include <string>
 
 #include <Eigen/Geometry>
 
 #include "stillmap/core/fields.hpp"
 #include "stillmap/geometry/camera.hpp"
 #include "stillmap/geometry/point_match.hpp"
+#include "stillmap/perception/motion/match_judge.hpp"
 #include "stillmap/slam/features/matcher.hpp"
 
 namespace stillmap {
@@ -22,7 +24,10 @@ struct StaticMatchesConfig {
   double depth_m = 0.03;
   double depth_per_m = 0.02;
   int min_environment = 20;
-  double min_parallax_px = 0.7;
+  double min_parallax_px = 0;
+  bool motion_check = false;
+  std::string unmatched = "keep";
+  double moving_share = 0.3;
   int iterations = 200;
   double search_px = 20;
   bool in_full = false;
@@ -60,10 +65,37 @@ struct StaticMatchesConfig {
                     10000});
     visit("min_parallax_px",
           self.min_parallax_px,
-          FieldInfo{"parallax below which the camera only rotates and has no fundamental matrix",
+          FieldInfo{"parallax below which the camera counts as one that only rotates, without a "
+                    "fundamental matrix; 0: there is always one (Fan 2020)",
                     "px",
                     0,
                     50});
+    visit("motion_check",
+          self.motion_check,
+          FieldInfo{"whether a match on its epipolar line must, too, be where a static point would "
+                    "be: points may move along the line (not in Fan 2020)"});
+    visit(
+        "unmatched",
+        self.unmatched,
+        FieldInfo{"treatment of a feature in the box of a dynamic object that has no match in the "
+                  "previous frame (drop in Fan 2020)",
+                  "",
+                  0,
+                  0,
+                  {"keep", "drop"}});
+    visit("moving_share",
+          self.moving_share,
+          FieldInfo{"ds-slam: share of the matches on an object farther than inlier_px from their "
+                    "epipolar lines above which the object moves",
+                    "",
+                    0,
+                    1});
+    matching_fields(self, visit);
+  }
+
+ private:
+  template <class Self, class Visitor>
+  static void matching_fields(Self& self, Visitor& visit) {
     visit("iterations",
           self.iterations,
           FieldInfo{"greatest number of RANSAC iterations", "", 1, 100000});
@@ -84,9 +116,14 @@ struct StaticMatchesConfig {
 /// The motion of the camera between two frames. Empty if the matches do not determine it.
 struct TwoViewGeometry {
   std::optional<Eigen::Matrix3d> F;    ///< none if the camera only rotates
-  std::optional<Eigen::Isometry3d> T;  ///< T_current_previous, if depth or the prediction gives it
+  std::optional<Eigen::Isometry3d> T;  ///< T_current_previous, if it is needed and known
   std::optional<Eigen::Matrix3d> R;    ///< the rotation, if there is no F
-  bool estimated = false;              ///< from matches, not from the prediction
+  MatchJudge judge = MatchJudge::kNothing;
+
+  /// Whether the matches determined it.
+  [[nodiscard]] bool estimated() const {
+    return judge == MatchJudge::kFundamental || judge == MatchJudge::kRotation;
+  }
 };
 
 enum class MatchVerdict : std::uint8_t {
@@ -96,8 +133,10 @@ enum class MatchVerdict : std::uint8_t {
 };
 
 /// The geometry of two frames from matches in the environment region (Fan 2020, section III-F): F
-/// by RANSAC, the motion from the depth of the inliers. A camera that only rotates has no F. With
-/// too few matches `expected_T_current_previous`, if given, is used instead.
+/// by RANSAC. A camera that only rotates has no F if `min_parallax_px` asks for it. The motion
+/// comes from the depth of the inliers where there is no F, or `motion_check` asks for it. With
+/// fewer than `min_environment` matches or inliers `expected_T_current_previous`, if given, is used
+/// instead.
 [[nodiscard]] TwoViewGeometry estimate_two_view(
     const CameraModel& camera,
     std::span<const PointMatch> environment,
@@ -106,8 +145,9 @@ enum class MatchVerdict : std::uint8_t {
     std::mt19937& rng);
 
 /// The verdict on a match in the dynamic region (Fan 2020, section III-F, Eqs. (15)-(17)): it moves
-/// if it is off its epipolar line. A point may also move along the line, so the reprojection under
-/// the motion, and the depth, must agree, too, if they are known.
+/// if it is farther than `epipolar_px` from its epipolar line. Without an F from matches, or with
+/// `motion_check`, the reprojection under the motion, and the depth, must agree, too, if they are
+/// known.
 [[nodiscard]] MatchVerdict judge_match(const CameraModel& camera,
                                        const TwoViewGeometry& geometry,
                                        const PointMatch& match,

@@ -119,6 +119,7 @@ TEST(Epipolar, RansacLeavesOutTheWrongThirdAndIsRepeatable) {
 
 TEST(StaticMatches, FindTheMotionAmongWrongMatches) {
   TwoViews views(kSideways);
+  views.config.motion_check = true;
   const std::optional<Eigen::Isometry3d> T = views.geometry(views.room(200, 60)).T;
   ASSERT_TRUE(T);
   EXPECT_LT((T->translation() - kSideways.translation()).norm(), 0.001);
@@ -134,11 +135,12 @@ TEST(RayRotation, IsTheTurn) {
 
 TEST(StaticMatches, WhatStandsAndWhatCrossesTheLinesIsToldApart) {
   TwoViews views(kSideways);
+  views.config.motion_check = true;
   for (const bool depth : {true, false}) {
     std::vector<PointMatch> room = views.room(150, 30);
     if (!depth) room = without_depth(room);
     const TwoViewGeometry geometry = views.geometry(room);
-    ASSERT_TRUE(geometry.F && geometry.estimated);
+    ASSERT_TRUE(geometry.F && geometry.estimated());
     EXPECT_EQ(geometry.T.has_value(), depth);
     int lost = 0, missed = 0;
     for (int i = 0; i < 100; ++i) {
@@ -158,6 +160,7 @@ TEST(StaticMatches, WhatStandsAndWhatCrossesTheLinesIsToldApart) {
 // moves along them.
 TEST(StaticMatches, MotionAlongTheLineIsSeenByDepthAlone) {
   TwoViews views(kAhead);
+  views.config.motion_check = true;
   const std::vector<PointMatch> room = views.room(150);
   const TwoViewGeometry geometry = views.geometry(room);
   ASSERT_TRUE(geometry.F && geometry.T);
@@ -175,6 +178,7 @@ TEST(StaticMatches, MotionAlongTheLineIsSeenByDepthAlone) {
 
 TEST(StaticMatches, ACameraThatOnlyTurnsHasNoLinesAndStillJudges) {
   TwoViews views(kTurn);
+  views.config.min_parallax_px = 0.7;
   for (const bool depth : {true, false}) {
     std::vector<PointMatch> room = views.room(150, 30);
     if (!depth) room = without_depth(room);
@@ -194,18 +198,53 @@ TEST(StaticMatches, ACameraThatOnlyTurnsHasNoLinesAndStillJudges) {
 
 TEST(StaticMatches, AStandingCameraIsNoCameraThatKnowsNothing) {
   TwoViews views(Eigen::Isometry3d::Identity());
+  views.config.min_parallax_px = 0.7;
   const TwoViewGeometry geometry = views.geometry(views.room(100));
   EXPECT_FALSE(geometry.F);
+  EXPECT_EQ(geometry.judge, MatchJudge::kRotation);
   EXPECT_EQ(views.judge(geometry, views.standing()), MatchVerdict::kStatic);
   EXPECT_EQ(views.judge(geometry, views.match({300, 200}, 2.0, {0.05, 0, 0})),
             MatchVerdict::kDynamic);
+}
+
+// Eq. (17) on numbers: level lines, so that the distance is the difference of the rows.
+TEST(StaticMatches, OfEquation17ByHand) {
+  const TwoViews views(kSideways);
+  TwoViewGeometry geometry;
+  geometry.judge = MatchJudge::kFundamental;
+  geometry.F.emplace();
+  *geometry.F << 0, 0, 0, 0, 0, -1, 0, 1, 0;
+  EXPECT_EQ(views.judge(geometry, {{10, 20}, {300, 20.5}, 2, 2}), MatchVerdict::kStatic);
+  EXPECT_EQ(views.judge(geometry, {{10, 20}, {300, 20.51}, 2, 2}), MatchVerdict::kDynamic);
+  EXPECT_EQ(views.judge(geometry, {{10, 20}, {300, 19.5}, 2, 2}), MatchVerdict::kStatic);
+  EXPECT_EQ(views.judge(geometry, {{10, 20}, {300, 19.49}, 2, 2}), MatchVerdict::kDynamic);
+}
+
+// The matrix of a camera that stands or only turns is any of many, each with lines through the
+// points: what moves leaves them unless it moves along them, which one direction in some does.
+TEST(StaticMatches, TheLineJudgesWithoutParallaxToo) {
+  for (const Eigen::Isometry3d& T : {Eigen::Isometry3d::Identity(), kTurn}) {
+    TwoViews views(T);
+    const TwoViewGeometry geometry = views.geometry(views.room(150));
+    ASSERT_EQ(geometry.judge, MatchJudge::kFundamental);
+    EXPECT_FALSE(geometry.T);
+    int kept = 0, found = 0;
+    for (int i = 0; i < 100; ++i) {
+      kept += views.judge(geometry, views.standing()) == MatchVerdict::kStatic ? 1 : 0;
+      const Eigen::Vector3d way(views.between(-0.06, 0.06), views.between(-0.06, 0.06), 0);
+      const Eigen::Vector2d px(views.between(100, 500), views.between(100, 400));
+      found += views.judge(geometry, views.match(px, 2.0, way)) == MatchVerdict::kDynamic ? 1 : 0;
+    }
+    EXPECT_GE(kept, 95);
+    EXPECT_GE(found, 80);
+  }
 }
 
 TEST(StaticMatches, WithFewMatchesTheExpectedMotionDecides) {
   TwoViews views(kSideways);
   const TwoViewGeometry geometry = views.geometry(views.room(5), kSideways);
   ASSERT_TRUE(geometry.F && geometry.T);
-  EXPECT_FALSE(geometry.estimated);
+  EXPECT_FALSE(geometry.estimated());
   for (int i = 0; i < 50; ++i) {
     const PointMatch stands = views.standing();
     const PointMatch moves = views.match({200.0 + i, 240}, 2.0, {0, 0.06, 0});
@@ -225,7 +264,7 @@ TEST(StaticMatches, WithFewMatchesAndNoExpectationNothingIsKnown) {
 TEST(StaticMatches, MatchesOfChanceAloneGiveNoGeometry) {
   TwoViews views(kSideways);
   const TwoViewGeometry geometry = views.geometry(views.room(60, 60), kSideways);
-  EXPECT_FALSE(geometry.estimated);
+  EXPECT_FALSE(geometry.estimated());
   EXPECT_EQ(geometry.T->matrix(), kSideways.matrix());
 }
 

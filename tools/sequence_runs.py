@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Runs of the program over sequences with ground truth, for tools/ablation and tools/reproduce."""
+import json
+import math
+import os
+import pathlib
+import statistics
+import subprocess
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+PROGRAM = os.environ.get("STILLMAP", ROOT / "build/release/bin/stillmap")
+LOST_FOR_GOOD = 3  # the exit code of a run that ends without a pose
+
+
+class Failure(Exception):
+    """A message for the user, in one line."""
+
+
+def parse(argument):
+    """The sequence of an argument NAME=FOLDER[,camera=NAME][,detections=FOLDER]."""
+    name, _, rest = argument.partition("=")
+    folder, *options = rest.split(",")
+    sequence = {"name": name, "folder": folder}
+    sequence |= dict(option.split("=", 1) for option in options if "=" in option)
+    known = set(sequence) <= {"name", "folder", "camera", "detections"}
+    if not name or not pathlib.Path(folder).is_dir() or not known:
+        raise Failure(f"{argument}: expected NAME=FOLDER[,camera=NAME][,detections=FOLDER]")
+    return sequence
+
+
+def call(*arguments):
+    """Runs the program; its standard output."""
+    command = [str(PROGRAM), *map(str, arguments)]
+    done = subprocess.run(command, capture_output=True, text=True)
+    if done.returncode not in (0, LOST_FOR_GOOD):
+        raise Failure(f"{' '.join(command)}: {done.stderr.strip()}")
+    return done.stdout
+
+
+def run(sequence, mode, out, start=0, settings=()):
+    """The report of a run from frame `start` on; of the run that is in `out` already, if there is one."""
+    report = pathlib.Path(out) / "report.json"
+    if not report.is_file():
+        command = ["run", sequence["folder"], "--out", out, "--dynamics", mode, "--threads", 1, "--frames", f"{start}:"]
+        if "camera" in sequence:
+            command += ["--camera", sequence["camera"]]
+        command += ["--segmenter", "detections:" + sequence["detections"] if "detections" in sequence else "auto"]
+        for setting in settings:
+            command += ["--set", setting]
+        pathlib.Path(out).mkdir(parents=True, exist_ok=True)
+        call(*command)
+        (pathlib.Path(out) / "map.stillmap").unlink(missing_ok=True)
+    found = json.loads(report.read_text())
+    if found["ate"]["rmse"] is None:
+        raise Failure(f"{sequence['folder']}: no ground truth for the frames that were tracked")
+    return found
+
+
+def median(values):
+    return statistics.median(values)
+
+
+def sign_test(better, worse):
+    """The chance that as many or more of the pairs differ in one direction if neither is better (two-sided)."""
+    n, k = better + worse, max(better, worse)
+    return min(1.0, 2 * sum(math.comb(n, i) for i in range(k, n + 1)) / 2 ** n) if n else 1.0
