@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <opencv2/core.hpp>
 
 #include "stillmap/core/error.hpp"
 #include "stillmap/dense/depth_islands.hpp"
