@@ -3,11 +3,14 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <type_traits>
+#include <utility>
 
 #include "python/bindings/pixels.hpp"
 #include "stillmap/core/error.hpp"
-#include "stillmap/perception/detections/detections_line.hpp"
+#include "stillmap/io/stamp_text.hpp"
 
 namespace stillmap::python {
 
@@ -93,13 +96,15 @@ DepthImage depth_image(const py::object& object, double depth_factor, LentArrays
 }
 
 Stamp stamp_of(const py::object& value) {
-  const bool is_text = py::isinstance<py::str>(value);
-  if (is_text && !is_plain_number(py::cast<std::string>(value))) {
-    throw Error("stamp: {}, expected digits and a point", py::cast<std::string>(py::repr(value)));
+  if (py::isinstance<py::str>(value)) {
+    if (std::optional<Stamp> stamp = parse_stamp(py::cast<std::string>(value))) {
+      return *std::move(stamp);
+    }
+    throw Error("stamp: {}, expected a finite number", py::cast<std::string>(py::repr(value)));
   }
   const double seconds = PyFloat_AsDouble(py::float_(value).ptr());
   if (!std::isfinite(seconds)) throw Error("stamp: {}, expected seconds", seconds);
-  return {seconds, is_text ? py::cast<std::string>(value) : fmt::format("{:.6f}", seconds)};
+  return {seconds, fmt::format("{:.6f}", seconds)};
 }
 
 py::object image_array(const cv::Mat& image) {
