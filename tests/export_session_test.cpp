@@ -127,7 +127,7 @@ TEST_F(ExportSession, SaysThatThereIsNothingInIt) {
 
 TEST_F(ExportSession, NeverWritesOverItsSource) {
   std::filesystem::rename(folder_ / "map.stillmap", folder_ / "a.ply");
-  expect_refused("a.ply --ply a.ply", "the run's own map");
+  expect_refused("a.ply --ply a.ply", "this is the input a.ply");
 }
 
 }  // namespace

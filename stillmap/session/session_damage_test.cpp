@@ -59,10 +59,10 @@ TEST(SessionDamage, SaysWhatItIs) {
   EXPECT_THAT(problem("ply\nformat ascii"), HasSubstr("not a stillmap session: expected"));
   EXPECT_THAT(problem("stillm"), HasSubstr("truncated"));
   EXPECT_THAT(problem(session_head(7) + bytes.substr(kSessionHeadSize)),
-              HasSubstr("written by a newer stillmap (format 7; this one reads 2): install"));
+              HasSubstr("written by a newer stillmap (format 7; this one reads 3): install"));
   EXPECT_THAT(
       problem(session_head(1) + bytes.substr(kSessionHeadSize)),
-      HasSubstr("written by an older stillmap (format 1; this one reads 2): make it again"));
+      HasSubstr("written by an older stillmap (format 1; this one reads 3): make it again"));
   EXPECT_NE(problem(session_head(0) + bytes.substr(kSessionHeadSize)), "");
   std::string changed = bytes;
   changed[40] ^= 1;

@@ -34,7 +34,8 @@ struct RawSection {
 /// A file of these sections, with right checksums.
 [[nodiscard]] inline std::string join_sections(const std::vector<RawSection>& sections) {
   std::string bytes;
-  SectionWriter out([&](std::string_view more) { bytes.append(more); });
+  // The version of sessions whose camera it can describe.
+  SectionWriter out([&](std::string_view more) { bytes.append(more); }, kOldestSessionVersion);
   for (const RawSection& section : sections) {
     ByteWriter content;
     content.array<char>(std::vector<char>(section.content.begin(), section.content.end()));

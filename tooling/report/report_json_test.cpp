@@ -177,7 +177,7 @@ TEST(ReportJson, CountsObjectsByClass) {
   report.objects = {
       object_of("person", 10, 10), object_of("chair", 7, 2), object_of("chair", 4, 0)};
   const json j = json::parse(report_json(report));
-  EXPECT_EQ(j.at("dynamics"), (json{{"mode", "full"}}));
+  EXPECT_EQ(j.at("dynamics"), (json{{"mode", "full"}, {"matches_judged_by", json::object()}}));
   const json chairs = {{"tracks", 2}, {"sightings", 11}, {"filled", 2}, {"dynamic", 2}};
   const json people = {{"tracks", 1}, {"sightings", 10}, {"filled", 1}, {"dynamic", 10}};
   EXPECT_EQ(j.at("objects"),
