@@ -282,27 +282,5 @@ TEST_F(Faults, AnExportWritesAllOrNothingWhicheverCallFails) {
   }
 }
 
-TEST_F(Faults, AMergeKeepsTheOldSessionWhicheverCallFailsOrKills) {
-  write_plane_sequence(folder_ / "wall", 12);
-  ASSERT_EQ(run("run wall --out a --frames 0:8").exit_code, 0);
-  ASSERT_EQ(run("run wall --out b --frames 4:12").exit_code, 0);
-  const std::string command = "merge a/map.stillmap b/map.stillmap --out ab.stillmap";
-  const long calls = counts_of(command).first;
-  const std::string merged = content("ab.stillmap");
-  ASSERT_GT(merged.size(), 1000U);
-  for (long n = 1; n <= calls; ++n) {
-    SCOPED_TRACE(fmt::format("call {} of {}", n, calls));
-    write("ab.stillmap", "old");
-    const Outcome outcome = run_with(command, fmt::format("STILLMAP_FAIL_CALL={}", n));
-    expect_clear(outcome);
-    EXPECT_TRUE(content("ab.stillmap") == (outcome.exit_code == 0 ? merged : "old"));
-    if (n % 4 != 0) continue;
-    write("ab.stillmap", "old");
-    EXPECT_EQ(run_with(command, fmt::format("STILLMAP_KILL_CALL={}", n)).exit_code, 137);
-    const std::string left = content("ab.stillmap");
-    EXPECT_TRUE(left == "old" || left == merged);
-  }
-}
-
 }  // namespace
 }  // namespace stillmap
