@@ -258,7 +258,7 @@ TEST_F(Faults, ARunKilledAtARandomMomentLeavesTheOldOrTheNew) {
 TEST_F(Faults, AnInterruptedSynthLeavesAPlaceForTheNext) {
   const std::string synth = "synth office --scene empty --size 64x48 --frames 2 --threads 1";
   EXPECT_EQ(run_with(synth, "STILLMAP_KILL_CALL=6").exit_code, 137);
-  EXPECT_THAT(run("run office --out out").err, HasSubstr("office/rgb.txt is missing"));
+  EXPECT_THAT(run("run office --out out").err, HasSubstr("office: no recording that is known"));
   ASSERT_EQ(run(synth).exit_code, 0);
   EXPECT_FALSE(fs::exists(folder_ / "office/.stillmap-new"));
   EXPECT_EQ(run(synth).exit_code, 2);  // a finished one is not replaced

@@ -119,7 +119,7 @@ TEST_F(Interruption, EndsARunAsIfTheSequenceHadEnded) {
 
 TEST_F(Interruption, ASecondSignalEndsTheProgramAtOnce) {
   start({"--out", "out"});
-  ASSERT_EQ(kill(child_, SIGINT), 0);
+  interrupt(SIGINT);
   ASSERT_EQ(kill(child_, SIGTERM), 0);
   const int status = wait_for_end();
   EXPECT_TRUE(WIFSIGNALED(status));

@@ -228,7 +228,7 @@ TEST_F(MapOfRun, PosesOfTruthMoveTheMapButNotTheTrajectory) {
 
 TEST_F(MapOfRun, PosesOfTruthNeedTruth) {
   std::filesystem::remove(folder_ / "wall" / "groundtruth.txt");
-  expect_refused("run wall --out out --poses truth", "has no groundtruth.txt");
+  expect_refused("run wall --out out --poses truth", "has no ground truth");
   expect_refused("run wall --out out --poses wrong", "--poses");
   std::filesystem::create_directories(folder_ / "wall" / "truth");
   write("wall/truth/static_map.ply", "no map");

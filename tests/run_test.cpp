@@ -263,7 +263,7 @@ TEST_F(Run, CountsJpegsThatLackNoPixel) {
     const bool odd = i % 3 == 1;
     write("wall/rgb/" + stamp(i) + ".png", std::string(bytes.begin(), bytes.end() - (odd ? 2 : 0)));
   }
-  const Outcome outcome = run("run wall --out out --frames 0:10");
+  const Outcome outcome = run("run wall --out out --frames 0:10 --segmenter none");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.err,
               MatchesRegex("stillmap: warning: 3 images are not quite in order, "
@@ -292,7 +292,7 @@ TEST_F(Run, SaysWhyNothingWasTracked) {
   EXPECT_EQ(run("run wall --out out --frames 9:12").err, "");
 }
 
-// Nanoseconds, unless they are read as such.
+// Nanoseconds, where the option says that they are seconds.
 TEST_F(Run, NamesAbsurdStamps) {
   std::string rgb_list, depth_list;
   for (int i = 0; i < 4; ++i) {
@@ -302,7 +302,7 @@ TEST_F(Run, NamesAbsurdStamps) {
   }
   write("wall/rgb.txt", rgb_list);
   write("wall/depth.txt", depth_list);
-  const Outcome outcome = run("run wall --out out --live --speed 100");
+  const Outcome outcome = run("run wall --out out --live --speed 100 --stamps s");
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_THAT(outcome.err, HasSubstr("the frames are 1e+08 s apart on average"));
   EXPECT_THAT(outcome.err, HasSubstr("299999997 s in all were not waited for"));

@@ -120,7 +120,7 @@ TEST_F(Segment, SaysWhatIsMissing) {
   EXPECT_THAT(run("segment s --out again --segmenter yolo").err,
               HasSubstr("--segmenter yolo: expected detections:DIR"));
   EXPECT_THAT(run("segment none --out again --segmenter detections:found").err,
-              HasSubstr("none/rgb.txt is missing"));
+              HasSubstr("none: no such file or folder"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "again"));
 }
 

@@ -11,9 +11,10 @@
 namespace stillmap {
 
 /// Writes a whole file or leaves it unchanged: the bytes go to a temporary file in the same folder,
-/// which is renamed; where it replaces another, once they are on the disk. A reader of `path` sees the old content or the new
-/// one, never a part. A link is followed; a device (/dev/stdout) is written directly. Throws Error
-/// on any failure (no such folder, not writable, disk full) and leaves no temporary file.
+/// which is renamed; where it replaces another, once they are on the disk. A reader of `path` sees
+/// the old content or the new one, never a part. A link is followed; a device (/dev/stdout) is
+/// written directly. Throws Error on any failure (no such folder, not writable, disk full) and
+/// leaves no temporary file.
 void write_file_atomically(const std::filesystem::path& path, std::string_view bytes);
 
 class FileMoves;
