@@ -27,7 +27,7 @@ set(CPACK_DEBIAN_DEV_PACKAGE_NAME libstillmap-dev)
 set(CPACK_COMPONENT_DEV_DESCRIPTION "RGB-D SLAM with a clean map of the static world, library
  Headers, static libraries and the CMake package of stillmap.")
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libeigen3-dev, libfmt-dev, libyaml-cpp-dev, nlohmann-json3-dev, libceres-dev, \
-libopencv-core-dev, libopencv-imgproc-dev, libpng-dev, zlib1g-dev, libdeflate-dev, libturbojpeg0-dev")
+libopencv-core-dev, libopencv-imgproc-dev, libpng-dev, zlib1g-dev, libdeflate-dev, libjpeg62-turbo-dev")
 set(CPACK_DEBIAN_DEV_PACKAGE_SHLIBDEPS OFF)
 
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-stillmap)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any rgb.txt, depth.txt and associations.txt give frames in order, of files in the folder, or are
-// refused.
+// Any rgb.txt, depth.txt and associations.txt give frames in order, of files without `..` in
+// their names, or are refused.
 #include <algorithm>
 
 #include "fuzz/harness.hpp"
@@ -18,14 +18,13 @@ void read(std::string_view bytes) {
   const std::filesystem::path associations = folder.put("associations.txt", parts[2]);
   if (parts[2].empty()) std::filesystem::remove(associations);
   read_or_refuse([&] {
-    const std::vector<SequenceEntry> entries = read_sequence_entries(folder.path());
+    const std::vector<SequenceEntry> entries = open_tum_lists(folder.path(), {}).entries;
     require(!entries.empty(), "there are frames");
     for (std::size_t i = 0; i < entries.size(); ++i) {
       require(i == 0 || entries[i - 1].stamp.seconds < entries[i].stamp.seconds, "in order");
       require(parse_stamp(entries[i].stamp.text)->seconds == entries[i].stamp.seconds, "a stamp");
       for (const auto& file : {entries[i].color_file, entries[i].depth_file}) {
-        const auto rest = std::ranges::mismatch(folder.path(), file.lexically_normal());
-        require(rest.in1 == folder.path().end(), "a file in the folder");
+        require(std::ranges::find(file, "..") == file.end(), "no way up");
       }
     }
   });
