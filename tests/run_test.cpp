@@ -302,10 +302,12 @@ TEST_F(Run, NamesAbsurdStamps) {
   }
   write("wall/rgb.txt", rgb_list);
   write("wall/depth.txt", depth_list);
-  const Outcome outcome = run("run wall --out out --live --speed 100 --stamps s");
+  const Outcome outcome = run("run wall --out out --stamps s");
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_THAT(outcome.err, HasSubstr("the frames are 1e+08 s apart on average"));
-  EXPECT_THAT(outcome.err, HasSubstr("299999997 s in all were not waited for"));
+  const Outcome live = run("run wall --out live --live --speed 100 --stamps s");
+  EXPECT_EQ(live.exit_code, 0);
+  EXPECT_THAT(live.err, HasSubstr("299999997 s in all were not waited for"));
   EXPECT_THAT(content("out/report.html"), HasSubstr("of path<"));
 }
 
