@@ -78,7 +78,7 @@ std::vector<MissedMovers::Place> MissedMovers::track_of(TrackId track) const {
   for (const Frame& frame : frames_) {
     const MoverSighting* largest = nullptr;
     for (const MoverSighting& mover : frame.movers) {
-      if (mover.track != track) continue;
+      if (mover.track != track || mover.surface.empty()) continue;
       if (largest == nullptr || mover.surface.size() > largest->surface.size()) largest = &mover;
     }
     if (largest == nullptr) continue;

@@ -20,6 +20,7 @@ constexpr double kPartOfWhole = 0.5;       // greatest area of a part
 constexpr double kBetweenRuns_s = 3600;    // then a person may be anywhere
 constexpr int kYoung = 5;                  // sightings after which an object is known
 constexpr float kColorGain = 0.1F;
+constexpr float kSureScore = 0.5F;  // below it, most people of the default networks are none
 
 // Classes that networks take for each other.
 constexpr std::array<std::array<std::string_view, 4>, 5> kSimilar = {{
@@ -322,10 +323,13 @@ std::vector<TrackId> ObjectIdentities::identify(
   remember(sightings, now_s);
   unite_by_place(sightings);
   movers_.clear();
-  for (Sighting& sighting : sightings) {
+  for (std::size_t i = 0; i < sightings.size(); ++i) {
+    Sighting& sighting = sightings[i];
     const KnownObject& object = known_[sighting.known];
     tracks.push_back(object.track);
-    if (!mobile(object) || sighting.look.surface.empty()) continue;
+    if (!mobile(object)) continue;
+    const bool sure = objects.objects[i].detection.score >= kSureScore;
+    if (!sure) sighting.look.surface.clear();
     movers_.push_back({object.track, std::move(sighting.look.surface)});
   }
   return tracks;

@@ -75,7 +75,8 @@ struct KnownObject {
 /// What a frame shows of an object that moves by itself.
 struct MoverSighting {
   TrackId track;
-  std::vector<Eigen::Vector3d> surface;  ///< a sample, in the odometry frame; not empty
+  /// A sample, in the odometry frame; empty where the network is hardly sure, or without depth.
+  std::vector<Eigen::Vector3d> surface;
 };
 
 /// Gives objects identities that last: an object that is seen again after it was hidden, missed for
