@@ -210,11 +210,10 @@ FrameDynamics JudgingStage::judge(
   FrameDynamics dynamics;
   dynamics.judged = objects_.judge(
       frame.depth, objects, measured, previous(T_odometry_camera_expected), motions_.moving());
-  identify_states(dynamics.judged.states,
-                  objects,
-                  identities_.identify(
-                      frame, objects, measured.areas, measured.depths, T_odometry_camera_expected));
-  dynamics.movers = identities_.movers();
+  IdentifiedObjects identified = identities_.identify(
+      frame, objects, measured.areas, measured.depths, T_odometry_camera_expected);
+  identify_states(dynamics.judged.states, objects, identified.tracks);
+  dynamics.movers = std::move(identified.movers);
   dynamics.objects = std::move(objects);
   if (jumps_ == JumpRule::kMultiView && T_odometry_camera_expected &&
       config_.objects.jump.enabled) {

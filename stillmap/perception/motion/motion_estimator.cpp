@@ -7,13 +7,13 @@
 
 #include "stillmap/core/error.hpp"
 #include "stillmap/perception/objects/boxes.hpp"
+#include "stillmap/perception/objects/object_look.hpp"
 
 namespace stillmap {
 namespace {
 
 constexpr double kForgetAfter_s = 2.0;
 constexpr double kLongestGap_s = 0.5;
-constexpr double kSurfacePoints = 300;
 
 double lower_median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
@@ -124,19 +124,14 @@ std::optional<MotionEstimator::Position> MotionEstimator::position_of(
 std::vector<Eigen::Vector3d> MotionEstimator::surface_of(const View& view,
                                                          const TrackedObject& object,
                                                          const ObjectState& state) const {
-  const cv::Rect area = pixels_of(object.detection.box, view.depth.mat.size());
-  const int step = std::max(1, static_cast<int>(std::sqrt(area.area() / kSurfacePoints)));
+  const DetectedObject& detection = object.detection;
+  const cv::Rect area = pixels_of(detection.box, view.depth.mat.size());
+  const ObjectView pixels{view.depth, view.objects.mask, detection.id, detection.box};
   std::vector<Eigen::Vector3d> points;
-  for (int row = area.y + step / 2; row < area.y + area.height; row += step) {
-    for (int x = area.x + step / 2; x < area.x + area.width; x += step) {
-      const float z = view.depth.mat(row, x);
-      if (view.objects.mask.mat(row, x) != object.detection.id || !state.depths->contains(z)) {
-        continue;
-      }
-      points.push_back(view.T_world_camera *
-                       camera_.unproject(camera_.undistort({x, row}), static_cast<double>(z)));
-    }
-  }
+  for_each_sample(pixels, area, *state.depths, [&](int row, int x, float z) {
+    points.push_back(view.T_world_camera *
+                     camera_.unproject(camera_.undistort({x, row}), static_cast<double>(z)));
+  });
   return points;
 }
 

@@ -16,6 +16,7 @@ constexpr double kForgetTrackletAfter_s = 10;
 constexpr double kSoon_s = 5;              // within it a person near the last place is the same
 constexpr double kLeastShareOfArea = 0.2;  // of the largest sighting, to be found by colors
 constexpr double kSamePlace_m = 0.25;      // two things are not in one place
+constexpr double kMostOfWhole = 0.7;       // least area of a sighting that tells the extent
 constexpr double kPartOfWhole = 0.5;       // greatest area of a part
 constexpr double kBetweenRuns_s = 3600;    // then a person may be anywhere
 constexpr int kYoung = 5;                  // sightings after which an object is known
@@ -76,12 +77,16 @@ std::vector<ObjectIdentities::Sighting> ObjectIdentities::sightings_of(
   for (std::size_t i = 0; i < objects.objects.size(); ++i) {
     const TrackedObject& object = objects.objects[i];
     const DetectedObject& detection = object.detection;
-    Sighting sighting{object.track, detection.class_name, {}, !object.filled, kNone};
+    Sighting sighting;
+    sighting.tracklet = object.track;
+    sighting.class_name = detection.class_name;
+    sighting.detected = !object.filled;
     if (T_odometry_camera && i < depths.size() && depths[i].interval) {
       const ObjectView view{frame.depth, objects.mask, detection.id, detection.box};
       const cv::Rect& area = areas[static_cast<std::size_t>(detection.id)].bounds;
       sighting.look = look_of(frame, view, area, *depths[i].interval, camera_);
       for (Eigen::Vector3d& p : sighting.look.surface) p = *T_odometry_camera * p;
+      if (!sighting.look.surface.empty()) sighting.middle = median_point(sighting.look.surface);
     }
     sightings.push_back(std::move(sighting));
   }
@@ -146,10 +151,9 @@ bool ObjectIdentities::mobile(const KnownObject& object) const {
 
 // From the middle of a sighting to the object's surface or, for a thing, to where it was seen best.
 double ObjectIdentities::gap(const Sighting& sighting, const KnownObject& object) const {
-  const Eigen::Vector3d middle = median_point(sighting.look.surface);
-  const double to_surface = distance_to(object.surface, middle);
+  const double to_surface = distance_to(object.surface, sighting.middle);
   if (mobile(object) || object.extent.isEmpty()) return to_surface;
-  return std::min(to_surface, object.extent.exteriorDistance(middle));
+  return std::min(to_surface, object.extent.exteriorDistance(sighting.middle));
 }
 
 // The best pairs of a sighting and an object that is not in the frame, each at most once. An object
@@ -200,8 +204,7 @@ void ObjectIdentities::unite_by_place(std::vector<Sighting>& sightings) {
     for (const KnownObject& earlier : known_) {
       if (earlier.track >= later.track) break;
       if (!similar(earlier.class_name, later.class_name) || earlier.extent.isEmpty()) continue;
-      const Eigen::Vector3d middle = median_point(sighting.look.surface);
-      if (earlier.extent.exteriorDistance(middle) > 0 ||
+      if (earlier.extent.exteriorDistance(sighting.middle) > 0 ||
           later.extent.exteriorDistance(earlier.extent.center()) > kSamePlace_m) {
         continue;
       }
@@ -238,12 +241,11 @@ std::size_t ObjectIdentities::whole_of(const Sighting& part,
                                        const std::vector<Sighting>& sightings) const {
   std::size_t nearest = kNone;
   if (part.look.surface.empty()) return nearest;
-  const Eigen::Vector3d middle = median_point(part.look.surface);
   const bool walks = categories_.of(part.class_name) == Category::kDynamic;
   double least = config_.part_reach_m;
   for (const Sighting& whole : sightings) {
     if (whole.known == kNone || !similar(whole.class_name, part.class_name)) continue;
-    const double distance = distance_to(whole.look.surface, middle);
+    const double distance = distance_to(whole.look.surface, part.middle);
     const double whole_m2 = std::max(whole.look.area_m2, known_[whole.known].extent_area_m2);
     const bool small = part.look.area_m2 <= kPartOfWhole * whole_m2;
     const bool same_place = !walks && distance <= kSamePlace_m;
@@ -291,7 +293,7 @@ void ObjectIdentities::remember(const std::vector<Sighting>& sightings, double n
     object.sightings += of_this_frame ? 0 : 1;
     if (look.surface.size() < kFewestPoints) continue;
     object.surface = look.surface;
-    if (look.area_m2 >= 0.7 * object.extent_area_m2) {
+    if (look.area_m2 >= kMostOfWhole * object.extent_area_m2) {
       object.extent = extent_of(look.surface);
       object.extent_area_m2 = std::max(look.area_m2, object.extent_area_m2);
     }
@@ -304,16 +306,16 @@ void ObjectIdentities::remember(const std::vector<Sighting>& sightings, double n
                 [&](const Joined& j) { return now_s - j.seen_s > kForgetTrackletAfter_s; });
 }
 
-std::vector<TrackId> ObjectIdentities::identify(
+IdentifiedObjects ObjectIdentities::identify(
     const RgbdFrame& frame,
     const FrameObjects& objects,
     const MaskAreas& areas,
     std::span<const ObjectDepths> depths,
     const std::optional<Eigen::Isometry3d>& T_odometry_camera) {
-  std::vector<TrackId> tracks;
+  IdentifiedObjects identified;
   if (!config_.enabled) {
-    for (const TrackedObject& object : objects.objects) tracks.push_back(object.track);
-    return tracks;
+    for (const TrackedObject& object : objects.objects) identified.tracks.push_back(object.track);
+    return identified;
   }
   const double now_s = objects.stamp.seconds;
   std::vector<Sighting> sightings = sightings_of(frame, objects, areas, depths, T_odometry_camera);
@@ -322,17 +324,16 @@ std::vector<TrackId> ObjectIdentities::identify(
   begin_tracks(sightings);
   remember(sightings, now_s);
   unite_by_place(sightings);
-  movers_.clear();
   for (std::size_t i = 0; i < sightings.size(); ++i) {
     Sighting& sighting = sightings[i];
     const KnownObject& object = known_[sighting.known];
-    tracks.push_back(object.track);
+    identified.tracks.push_back(object.track);
     if (!mobile(object)) continue;
     const bool sure = objects.objects[i].detection.score >= kSureScore;
     if (!sure) sighting.look.surface.clear();
-    movers_.push_back({object.track, std::move(sighting.look.surface)});
+    identified.movers.push_back({object.track, std::move(sighting.look.surface)});
   }
-  return tracks;
+  return identified;
 }
 
 void ObjectIdentities::know(std::vector<KnownObject> objects) {

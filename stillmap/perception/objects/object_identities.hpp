@@ -79,6 +79,12 @@ struct MoverSighting {
   std::vector<Eigen::Vector3d> surface;
 };
 
+/// The objects of a frame as they are known.
+struct IdentifiedObjects {
+  std::vector<TrackId> tracks;        ///< lasting, in the order of the frame's objects
+  std::vector<MoverSighting> movers;  ///< those that move by themselves
+};
+
 /// Gives objects identities that last: an object that is seen again after it was hidden, missed for
 /// long or outside the image has the track that it had before.
 ///
@@ -95,9 +101,9 @@ class ObjectIdentities {
                    const CategoryTable& categories,
                    const CameraModel& camera);
 
-  /// The lasting tracks of the objects of a frame, in their order. `areas` and `depths` are of
-  /// their masks; the pose is the predicted one, and without it no known object is found again.
-  [[nodiscard]] std::vector<TrackId> identify(
+  /// Identifies the objects of a frame. `areas` and `depths` are of their masks; the pose is the
+  /// predicted one, and without it no known object is found again.
+  [[nodiscard]] IdentifiedObjects identify(
       const RgbdFrame& frame,
       const FrameObjects& objects,
       const MaskAreas& areas,
@@ -116,8 +122,6 @@ class ObjectIdentities {
   [[nodiscard]] std::vector<KnownObject> all_in_world(
       const Eigen::Isometry3d& T_odometry_world) const;
 
-  /// What the frame of the last identify() shows of the objects that move by themselves.
-  [[nodiscard]] const std::vector<MoverSighting>& movers() const { return movers_; }
   /// All objects that have a place, by track.
   [[nodiscard]] const std::vector<KnownObject>& known() const { return known_; }
   /// The tracks of earlier frames that turned out to be of one object, in the order of finding.
@@ -127,7 +131,8 @@ class ObjectIdentities {
   struct Sighting {
     TrackId tracklet;  // of the ObjectTracker
     std::string class_name;
-    ObjectLook look;  // surface in the odometry frame
+    ObjectLook look;                                   // surface in the odometry frame
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();  // of the surface, where there is any
     bool detected = false;
     std::size_t known = kNone;  // index of the known object
   };
@@ -174,7 +179,6 @@ class ObjectIdentities {
   std::vector<KnownObject> unplaced_;  // by track
   std::vector<Joined> joined_;         // tracks of the ObjectTracker that may go on
   std::vector<UnitedTracks> united_;
-  std::vector<MoverSighting> movers_;
   std::uint32_t next_track_ = 0;
 };
 

@@ -76,7 +76,7 @@ class Room {
     if (has_pose) T_odometry_camera = Eigen::Translation3d(camera_x_m, 0, 0);
     std::vector<std::uint32_t> tracks;
     for (const TrackId track :
-         identities_.identify(frame, objects, areas, depths, T_odometry_camera)) {
+         identities_.identify(frame, objects, areas, depths, T_odometry_camera).tracks) {
       tracks.push_back(track.value);
     }
     return tracks;

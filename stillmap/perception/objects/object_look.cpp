@@ -9,8 +9,6 @@
 namespace stillmap {
 namespace {
 
-constexpr double kPoints = 300;
-
 std::size_t color_cell(const cv::Vec3b& color) {
   return static_cast<std::size_t>((color[0] / 64) * 16 + (color[1] / 64) * 4 + color[2] / 64);
 }
@@ -31,19 +29,14 @@ ObjectLook look_of(const RgbdFrame& frame,
                    DepthInterval depths,
                    const CameraModel& camera) {
   ObjectLook look;
-  const int step = std::max(1, static_cast<int>(std::sqrt(area.area() / kPoints)));
   double squared_depths = 0;
   const bool colored = !frame.color.mat.empty();
-  for (int row = area.y + step / 2; row < area.y + area.height; row += step) {
-    for (int x = area.x + step / 2; x < area.x + area.width; x += step) {
-      const float z = view.depth.mat(row, x);
-      if (view.mask.mat(row, x) != view.id || !(z > 0) || !depths.contains(z)) continue;
-      const auto depth = static_cast<double>(z);
-      look.surface.push_back(camera.unproject(camera.undistort({x, row}), depth));
-      if (colored) look.colors[color_cell(frame.color.mat(row, x))] += 1;
-      squared_depths += depth * depth;
-    }
-  }
+  const int step = for_each_sample(view, area, depths, [&](int row, int x, float z) {
+    const auto depth = static_cast<double>(z);
+    look.surface.push_back(camera.unproject(camera.undistort({x, row}), depth));
+    if (colored) look.colors[color_cell(frame.color.mat(row, x))] += 1;
+    squared_depths += depth * depth;
+  });
   for (float& share : look.colors) {
     share /= static_cast<float>(std::max<std::size_t>(look.surface.size(), 1));
   }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include <Eigen/Core>
@@ -20,6 +22,24 @@ using ColorShares = std::array<float, 64>;
 /// color.
 [[nodiscard]] double color_distance(const ColorShares& a, const ColorShares& b);
 
+/// Calls `use(row, column, depth)` for some 300 pixels of an object with depths in an interval, on
+/// a grid over `area`, which bounds its pixels. Returns the distance of the grid's lines, pixels.
+template <class Use>
+int for_each_sample(const ObjectView& view,
+                    const cv::Rect& area,
+                    DepthInterval depths,
+                    const Use& use) {
+  constexpr double kSamples = 300;
+  const int step = std::max(1, static_cast<int>(std::sqrt(area.area() / kSamples)));
+  for (int row = area.y + step / 2; row < area.y + area.height; row += step) {
+    for (int x = area.x + step / 2; x < area.x + area.width; x += step) {
+      const float z = view.depth.mat(row, x);
+      if (view.mask.mat(row, x) == view.id && depths.contains(z)) use(row, x, z);
+    }
+  }
+  return step;
+}
+
 /// What a frame shows of an object.
 struct ObjectLook {
   std::vector<Eigen::Vector3d> surface;  ///< a sample of its visible surface, camera coordinates
@@ -27,8 +47,7 @@ struct ObjectLook {
   double area_m2 = 0;                    ///< of its silhouette
 };
 
-/// The look of the pixels of an object with depths in an interval, by some 300 of them. `area`
-/// bounds the object's pixels.
+/// The look of an object, by for_each_sample().
 [[nodiscard]] ObjectLook look_of(const RgbdFrame& frame,
                                  const ObjectView& view,
                                  const cv::Rect& area,
