@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -15,6 +14,7 @@
 #include "apps/commands.hpp"
 #include "apps/commands/evaluate.hpp"
 #include "stillmap/core/error.hpp"
+#include "stillmap/core/parse_number.hpp"
 #include "stillmap/sensor/sequence.hpp"
 #include "tooling/eval/ate.hpp"
 #include "tooling/eval/metrics_json.hpp"
@@ -48,10 +48,8 @@ struct TrajectoryFigures {
 // The scale that is asked for; nothing for the one that fits.
 std::optional<double> given_scale(const std::string& text) {
   if (text == kFit) return std::nullopt;
-  double scale = 0;
-  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), scale);
-  const bool number = status == std::errc() && end == text.data() + text.size();
-  if (!number || !std::isfinite(scale) || scale <= 0) {
+  const std::optional<double> scale = parse_number<double>(text);
+  if (!scale || !std::isfinite(*scale) || *scale <= 0) {
     throw Error("--scale {}: expected a positive number or '{}'", text, kFit);
   }
   return scale;

@@ -1,22 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stillmap/io/stamp_text.hpp"
 
-#include <charconv>
 #include <cmath>
-#include <system_error>
 
 #include <fmt/core.h>
+
+#include "stillmap/core/parse_number.hpp"
 
 namespace stillmap {
 
 std::optional<Stamp> parse_stamp(std::string_view text) {
   if (text.size() > kMaxStampLength) return std::nullopt;
-  Stamp stamp;
-  const char* const end = text.data() + text.size();
-  const auto [parsed, status] = std::from_chars(text.data(), end, stamp.seconds);
-  if (status != std::errc() || parsed != end || !std::isfinite(stamp.seconds)) return std::nullopt;
-  stamp.text = text;
-  return stamp;
+  const std::optional<double> seconds = parse_number<double>(text);
+  if (!seconds || !std::isfinite(*seconds)) return std::nullopt;
+  return Stamp{*seconds, std::string(text)};
 }
 
 std::string stamp_text(const Stamp& stamp) {

@@ -2,12 +2,12 @@
 #include "stillmap/io/text_table.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <utility>
 
 #include "stillmap/core/error.hpp"
+#include "stillmap/core/parse_number.hpp"
 #include "stillmap/io/stamp_text.hpp"
 #include "stillmap/io/text_file.hpp"
 
@@ -73,13 +73,12 @@ std::string TextTable::place(const TextRow& row) const {
 
 double TextTable::number(const TextRow& row, std::size_t column) const {
   const std::string_view text = row.columns.at(column);
-  double value = 0.0;
-  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (status != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
+  const std::optional<double> value = parse_number<double>(text);
+  if (!value || !std::isfinite(*value)) {
     throw Error(
         "{}: column {} is {}, expected a finite number", place(row), column + 1, quoted(text));
   }
-  return value;
+  return *value;
 }
 
 Stamp TextTable::stamp(const TextRow& row, std::size_t column) const {

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <string>
 
+#include <Eigen/Geometry>
+
 #include "stillmap/core/trajectory.hpp"
 
 namespace stillmap {
@@ -20,15 +22,31 @@ namespace stillmap {
 /// zero; and for a file without poses.
 [[nodiscard]] Trajectory read_trajectory(const std::filesystem::path& path);
 
-/// A trajectory some rows of whose file have no pose.
-struct PartialTrajectory {
+/// A trajectory as a file has it.
+struct ReadTrajectory {
   Trajectory poses;
+  std::size_t equal_stamps = 0;   ///< poses that a later line with the same stamp replaced
   std::size_t rows_left_out = 0;  ///< those with a number that is not finite
 };
 
+/// read_trajectory() with what it says of the file; no row is left out.
+[[nodiscard]] ReadTrajectory read_whole_trajectory(const std::filesystem::path& path);
+
 /// read_trajectory() without the rows in which a number is not finite, as motion capture writes
 /// where it does not see its markers.
-[[nodiscard]] PartialTrajectory read_trajectory_with_gaps(const std::filesystem::path& path);
+[[nodiscard]] ReadTrajectory read_trajectory_with_gaps(const std::filesystem::path& path);
+
+/// Poses sorted by stamp; of equal stamps the last counts.
+[[nodiscard]] ReadTrajectory sorted_by_stamp(Trajectory poses);
+
+/// The pose of numbers in a file, the quaternion normalised. Throws Error, beginning with `place`,
+/// for a position beyond 1e9 m and a quaternion whose length is far from 1.
+[[nodiscard]] Eigen::Isometry3d checked_pose(const Eigen::Vector3d& t,
+                                             const Eigen::Quaterniond& q,
+                                             const std::string& place);
+/// Throws Error, beginning with `place`, for a position beyond 1e9 m: squares and sums would lose
+/// their precision.
+void check_position(const Eigen::Vector3d& t, const std::string& place);
 
 /// A trajectory in the TUM format. Stamps keep their text; numbers have 7 decimals (0.1
 /// micrometres), so that the same poses give the same bytes.

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "stillmap/core/ascii_lower.hpp"
 #include "stillmap/core/error.hpp"
 
 namespace stillmap {
@@ -240,9 +241,8 @@ CameraModel read_realsense(const CameraValues& values) {
   const std::vector<double> coefficients = values.numbers("coeffs");
   if (all_zero(coefficients)) return camera;
   std::string model = values.has("model") ? values.text("model") : "";
-  std::ranges::transform(model, model.begin(), [](char c) {
-    return c == ' ' ? '_' : c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  });
+  model = ascii_lower(std::move(model));
+  std::ranges::replace(model, ' ', '_');
   if (model.ends_with("kannala_brandt4")) {
     camera.lens = LensModel::kFisheye;
   } else if (!model.ends_with("brown_conrady") || model.ends_with("inverse_brown_conrady") ||

@@ -2,7 +2,6 @@
 #include "stillmap/sensor/camera_values.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <set>
@@ -11,6 +10,7 @@
 
 #include "stillmap/core/error.hpp"
 #include "stillmap/core/joined.hpp"
+#include "stillmap/core/parse_number.hpp"
 #include "stillmap/io/atomic_file.hpp"
 
 namespace stillmap {
@@ -19,18 +19,8 @@ namespace {
 constexpr std::size_t kMaxCameraFileBytes = std::size_t{1} << 20U;
 constexpr std::size_t kMaxCameraValues = 10'000;  // aliases can make many of a short file
 
-// Independent of the locale, and strict: the whole text is the number.
-template <class Number>
-std::optional<Number> whole_text_as(const std::string& text) {
-  Number value{};
-  const char* end = text.data() + text.size();
-  const auto [parsed, status] = std::from_chars(text.data(), end, value);
-  if (status != std::errc() || parsed != end) return std::nullopt;
-  return value;
-}
-
 double finite_number(const std::string& text, std::string_view key, const std::string& place) {
-  const std::optional<double> number = whole_text_as<double>(text);
+  const std::optional<double> number = parse_number<double>(text);
   if (!number || !std::isfinite(*number)) {
     throw Error("{}: {} is '{}', expected a finite number", place, key, text);
   }
@@ -155,7 +145,7 @@ double CameraValues::number(std::string_view key) const {
 
 int CameraValues::whole(std::string_view key) const {
   const std::string& value = text(key);
-  const std::optional<int> number = whole_text_as<int>(value);
+  const std::optional<int> number = parse_number<int>(value);
   if (!number) throw Error("{}: {} is '{}', expected a whole number", place(key), key, value);
   return *number;
 }

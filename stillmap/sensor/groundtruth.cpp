@@ -12,7 +12,7 @@ namespace stillmap {
 GroundTruth read_groundtruth(const std::filesystem::path& path, const ReadingOptions& options) {
   GroundTruth truth;
   try {
-    PartialTrajectory read = read_trajectory_with_gaps(path);
+    ReadTrajectory read = read_trajectory_with_gaps(path);
     truth.poses = std::move(read.poses);
     if (read.rows_left_out > 0) {
       truth.warnings.push_back(fmt::format(

@@ -2,11 +2,11 @@
 #include "stillmap/sensor/image_folders.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <string>
 #include <system_error>
 #include <vector>
 
+#include "stillmap/core/ascii_lower.hpp"
 #include "stillmap/core/error.hpp"
 #include "stillmap/io/atomic_file.hpp"
 #include "stillmap/sensor/groundtruth.hpp"
@@ -29,11 +29,6 @@ std::vector<fs::path> subfolders(const fs::path& folder) {
   return found;
 }
 
-std::string lower(std::string text) {
-  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
-
 // The folder with one of the names, the first name first, else the only one with a word in its
 // name.
 fs::path choose(const std::vector<fs::path>& folders,
@@ -41,12 +36,12 @@ fs::path choose(const std::vector<fs::path>& folders,
                 const std::vector<std::string>& words) {
   for (const std::string& name : names) {
     for (const fs::path& folder : folders) {
-      if (lower(folder.filename().string()) == name) return folder;
+      if (ascii_lower(folder.filename().string()) == name) return folder;
     }
   }
   fs::path only;
   for (const fs::path& folder : folders) {
-    const std::string name = lower(folder.filename().string());
+    const std::string name = ascii_lower(folder.filename().string());
     const bool fits = std::ranges::any_of(
         words, [&](const std::string& word) { return name.find(word) != std::string::npos; });
     if (!fits) continue;
@@ -71,7 +66,7 @@ std::optional<ImageFolders> find_image_folders(const fs::path& folder) {
   found.depth = choose(folders, {"depth"}, {"depth"});
   std::vector<fs::path> others;
   std::ranges::copy_if(folders, std::back_inserter(others), [](const fs::path& path) {
-    return lower(path.filename().string()).find("depth") == std::string::npos;
+    return ascii_lower(path.filename().string()).find("depth") == std::string::npos;
   });
   found.color = choose(others, {"color", "rgb", "image", "images"}, {"color", "rgb"});
   if (found.color.empty() || found.depth.empty()) return std::nullopt;

@@ -2,14 +2,15 @@
 #include "stillmap/sensor/image_list.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "stillmap/core/ascii_lower.hpp"
 #include "stillmap/core/error.hpp"
 #include "stillmap/io/atomic_file.hpp"
+#include "stillmap/io/stamp_text.hpp"
 #include "stillmap/io/text_file.hpp"
 
 namespace stillmap {
@@ -57,8 +58,7 @@ std::optional<double> number_in(std::string_view text) {
 }
 
 Stamp stamp_in(std::string_view text, std::size_t column, const std::string& place) {
-  const std::optional<double> value = number_in(text);
-  if (value && std::isfinite(*value)) return {*value, std::string(text)};
+  if (std::optional<Stamp> stamp = parse_stamp(text)) return *std::move(stamp);
   std::string shown(text.substr(0, 40));
   std::ranges::replace_if(
       shown, [](char c) { return c < ' ' || c > '~'; }, '?');
@@ -133,8 +133,7 @@ std::optional<fs::path> below(const fs::path& folder, const fs::path& elsewhere)
 bool has_image_suffix(std::string_view name) {
   const std::size_t dot = name.rfind('.');
   if (dot == std::string_view::npos) return false;
-  std::string suffix(name.substr(dot + 1));
-  std::ranges::transform(suffix, suffix.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string suffix = ascii_lower(std::string(name.substr(dot + 1)));
   return suffix == "png" || suffix == "jpg" || suffix == "jpeg";
 }
 

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stillmap/sensor/number_text.hpp"
 
-#include <charconv>
+#include <algorithm>
+#include <optional>
 
 #include "stillmap/core/error.hpp"
+#include "stillmap/core/parse_number.hpp"
 
 namespace stillmap {
 
@@ -15,14 +17,13 @@ std::vector<double> numbers_in(std::string_view text,
   for (std::size_t at = text.find_first_not_of(kBetween); at != std::string_view::npos;
        at = text.find_first_not_of(kBetween, at)) {
     const std::size_t end = std::min(text.find_first_of(kBetween, at), text.size());
-    double value = 0;
-    const auto [parsed, status] = std::from_chars(text.data() + at, text.data() + end, value);
-    if (status != std::errc() || parsed != text.data() + end) {
+    const std::optional<double> value = parse_number<double>(text.substr(at, end - at));
+    if (!value) {
       throw Error("{}: not a list of numbers, expected {} of them",
                   place,
                   expected == 0 ? "any count" : std::to_string(expected));
     }
-    numbers.push_back(value);
+    numbers.push_back(*value);
     at = end;
   }
   if (expected != 0 && numbers.size() != expected) {

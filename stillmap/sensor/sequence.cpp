@@ -5,6 +5,7 @@
 #include <system_error>
 #include <utility>
 
+#include "stillmap/core/ascii_lower.hpp"
 #include "stillmap/io/atomic_file.hpp"
 #include "stillmap/sensor/camera_io.hpp"
 
@@ -24,9 +25,9 @@ std::string name_of(const fs::path& path) {
 std::vector<std::string> words_of(const std::string& name) {
   std::vector<std::string> words(1);
   for (const char c : name) {
-    const bool capital = c >= 'A' && c <= 'Z';
-    if (capital || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) {
-      words.back() += static_cast<char>(capital ? c - 'A' + 'a' : c);
+    const char lower = ascii_lower(c);
+    if ((lower >= 'a' && lower <= 'z') || (c >= '0' && c <= '9')) {
+      words.back() += lower;
     } else {
       words.emplace_back();
     }

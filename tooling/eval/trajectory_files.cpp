@@ -3,27 +3,28 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
 
 #include "stillmap/core/error.hpp"
+#include "stillmap/core/parse_number.hpp"
 #include "stillmap/geometry/se3.hpp"
 #include "stillmap/io/atomic_file.hpp"
 #include "stillmap/io/text_table.hpp"
-#include "stillmap/io/trajectory_io.hpp"
 
 namespace stillmap {
 namespace {
 
 constexpr std::size_t kMaxTrajectoryBytes = std::size_t{64} << 20U;
 constexpr double kKittiFramesPerS = 10;
-constexpr double kMaxPositionM = 1e9;  // as in read_trajectory()
 
 struct Line {
   std::string_view text;
@@ -69,17 +70,11 @@ std::size_t column_count(std::string_view row) {
 
 template <class Number>
 Number number_of(std::string_view text, const std::string& place) {
-  Number value{};
-  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
-  bool good = status == std::errc() && end == text.data() + text.size();
-  if constexpr (std::is_floating_point_v<Number>) good = good && std::isfinite(value);
+  const std::optional<Number> value = parse_number<Number>(text);
+  bool good = value.has_value();
+  if constexpr (std::is_floating_point_v<Number>) good = good && std::isfinite(*value);
   if (!good) throw Error("{}: '{}', expected a number", place, text.substr(0, 40));
-  return value;
-}
-
-void check_position(const Eigen::Vector3d& t, const std::string& place) {
-  if (t.cwiseAbs().maxCoeff() <= kMaxPositionM) return;
-  throw Error("{}: position beyond {} m, expected metres", place, kMaxPositionM);
+  return *value;
 }
 
 StampedPose euroc_pose(const Line& line, const std::string& place) {
@@ -90,32 +85,20 @@ StampedPose euroc_pose(const Line& line, const std::string& place) {
   const auto stamp_ns = number_of<std::uint64_t>(columns[0], place);
   std::array<double, 7> n{};
   for (std::size_t i = 0; i < n.size(); ++i) n[i] = number_of<double>(columns[i + 1], place);
-  const Eigen::Vector3d t(n[0], n[1], n[2]);
-  check_position(t, place);
-  const Eigen::Vector4d q(n[3], n[4], n[5], n[6]);
-  if (!(q.norm() > 1e-6 && q.norm() < 1e6)) {
-    throw Error("{}: quaternion of length {:.3g}, expected about 1", place, q.norm());
-  }
+  const Eigen::Isometry3d T =
+      checked_pose({n[0], n[1], n[2]}, Eigen::Quaterniond(n[3], n[4], n[5], n[6]), place);
   const Stamp stamp{static_cast<double>(stamp_ns) * 1e-9,
                     fmt::format("{}.{:09}", stamp_ns / 1'000'000'000, stamp_ns % 1'000'000'000)};
-  return {stamp, make_pose(Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized(), t)};
+  return {stamp, T};
 }
 
-Trajectory read_euroc(const std::string& text, const std::string& file) {
+ReadTrajectory read_euroc(const std::string& text, const std::string& file) {
   Trajectory poses;
   for_each_row(text, [&](const Line& line) {
     poses.push_back(euroc_pose(line, fmt::format("{}:{}", file, line.number)));
     return true;
   });
-  const auto seconds = [](const StampedPose& pose) { return pose.stamp.seconds; };
-  std::ranges::stable_sort(poses, {}, seconds);
-  // Keeps the last of equal stamps, as read_trajectory() does.
-  Trajectory unique;
-  for (StampedPose& pose : poses) {
-    if (!unique.empty() && seconds(unique.back()) == seconds(pose)) unique.pop_back();
-    unique.push_back(std::move(pose));
-  }
-  return unique;
+  return sorted_by_stamp(std::move(poses));
 }
 
 StampedPose kitti_pose(const TextTable& table, const TextRow& row, std::size_t frame) {
@@ -139,22 +122,6 @@ Trajectory read_kitti(const std::filesystem::path& path) {
   return poses;
 }
 
-// Of the first column, which need be no number.
-std::size_t equal_stamps(const std::string& text, bool with_commas) {
-  std::vector<double> stamps;
-  for_each_row(text, [&](const Line& line) {
-    const std::string_view column =
-        line.text.substr(0, line.text.find_first_of(with_commas ? "," : " \t"));
-    double stamp = 0;
-    const auto [end, status] = std::from_chars(column.data(), column.data() + column.size(), stamp);
-    if (status == std::errc()) stamps.push_back(with_commas ? stamp * 1e-9 : stamp);
-    return true;
-  });
-  std::ranges::sort(stamps);
-  return stamps.size() -
-         static_cast<std::size_t>(std::ranges::unique(stamps).begin() - stamps.begin());
-}
-
 }  // namespace
 
 ReadTrajectory read_any_trajectory(const std::filesystem::path& path) {
@@ -165,10 +132,10 @@ ReadTrajectory read_any_trajectory(const std::filesystem::path& path) {
     return false;
   });
   if (first.find(',') != std::string_view::npos) {
-    return {read_euroc(text, path.string()), equal_stamps(text, true)};
+    return read_euroc(text, path.string());
   }
-  if (column_count(first) == 12) return {read_kitti(path), 0};
-  return {read_trajectory(path), equal_stamps(text, false)};
+  if (column_count(first) == 12) return {read_kitti(path)};
+  return read_whole_trajectory(path);
 }
 
 }  // namespace stillmap

@@ -1,18 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
 
-#include "stillmap/core/trajectory.hpp"
+#include "stillmap/io/trajectory_io.hpp"
 
 namespace stillmap {
-
-/// A trajectory as a file has it.
-struct ReadTrajectory {
-  Trajectory poses;
-  std::size_t equal_stamps = 0;  ///< poses that a later line with the same stamp replaced
-};
 
 /// Reads a trajectory in one of three formats, told apart by the first row:
 /// - TUM: see read_trajectory();

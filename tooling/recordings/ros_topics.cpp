@@ -6,6 +6,7 @@
 #include <iterator>
 #include <string_view>
 
+#include "stillmap/core/ascii_lower.hpp"
 #include "stillmap/core/error.hpp"
 #include "stillmap/core/joined.hpp"
 
@@ -34,8 +35,7 @@ auto of_kind(RosImageKind kind) {
 
 auto with_word(std::string_view a, std::string_view b) {
   return [a, b](const ImageTopic& topic) {
-    std::string name = topic.name;
-    std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+    const std::string name = ascii_lower(topic.name);
     return name.find(a) != std::string::npos || name.find(b) != std::string::npos;
   };
 }

@@ -6,6 +6,8 @@
 #include <functional>
 #include <map>
 
+#include "stillmap/core/ascii_lower.hpp"
+
 namespace stillmap {
 namespace {
 
@@ -76,8 +78,8 @@ constexpr std::array<Synonyms, 25> kSynonyms = {{
 
 std::string folded(std::string_view name) {
   std::string letters;
-  for (const char c : name) {
-    if (c >= 'A' && c <= 'Z') letters += static_cast<char>(c - 'A' + 'a');
+  for (const char original : name) {
+    const char c = ascii_lower(original);
     const bool other_script = static_cast<unsigned char>(c) >= 0x80;
     if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || other_script) letters += c;
   }
