@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "apps/interruptible_stream.hpp"
+
 #include <fmt/core.h>
 
 #include "apps/interruption.hpp"

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs of the program over sequences with ground truth, for tools/ablation and tools/reproduce."""
+"""Runs of the program over sequences with ground truth, for the tools that make tables of them."""
 import json
 import math
 import os
 import pathlib
+import re
 import statistics
 import subprocess
 
@@ -16,15 +17,17 @@ class Failure(Exception):
     """A message for the user, in one line."""
 
 
-def parse(argument):
-    """The sequence of an argument NAME=FOLDER[,camera=NAME][,detections=FOLDER]."""
+def parse(argument, further=()):
+    """The sequence of an argument NAME=FOLDER[,camera=NAME][,detections=FOLDER], with `further` options."""
     name, _, rest = argument.partition("=")
     folder, *options = rest.split(",")
     sequence = {"name": name, "folder": folder}
     sequence |= dict(option.split("=", 1) for option in options if "=" in option)
-    known = set(sequence) <= {"name", "folder", "camera", "detections"}
-    if not name or not pathlib.Path(folder).is_dir() or not known:
-        raise Failure(f"{argument}: expected NAME=FOLDER[,camera=NAME][,detections=FOLDER]")
+    known = set(sequence) <= {"name", "folder", "camera", "detections", *further}
+    known = known and all("=" in option for option in options)
+    if not re.fullmatch(r"\w[\w-]*", name) or not pathlib.Path(folder).is_dir() or not known:
+        more = "".join(f"[,{option}=...]" for option in further)
+        raise Failure(f"{argument}: expected NAME=FOLDER[,camera=NAME][,detections=FOLDER]{more}")
     return sequence
 
 

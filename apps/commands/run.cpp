@@ -12,6 +12,7 @@
 #include "apps/command_inputs.hpp"
 #include "apps/commands.hpp"
 #include "apps/image_names.hpp"
+#include "apps/interruptible_stream.hpp"
 #include "apps/interruption.hpp"
 #include "apps/option_value.hpp"
 #include "apps/run_evaluation.hpp"
