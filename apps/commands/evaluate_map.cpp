@@ -21,6 +21,7 @@ struct MapArguments {
   std::string map;
   std::string static_truth;
   std::string dynamic_truth;
+  std::string resting_truth;
   std::string groundtruth;
   std::string trajectory;
   bool json = false;
@@ -63,12 +64,13 @@ std::string as_table(const MapQuality& quality, std::size_t points) {
   return text;
 }
 
+std::optional<std::filesystem::path> if_given(const std::string& file) {
+  return file.empty() ? std::nullopt : std::optional<std::filesystem::path>(file);
+}
+
 void evaluate_map(const MapArguments& arguments) {
-  const std::optional<std::filesystem::path> dynamic =
-      arguments.dynamic_truth.empty()
-          ? std::nullopt
-          : std::optional<std::filesystem::path>(arguments.dynamic_truth);
-  const MapTruth truth = read_map_truth(arguments.static_truth, dynamic);
+  const MapTruth truth = read_map_truth(
+      arguments.static_truth, if_given(arguments.dynamic_truth), if_given(arguments.resting_truth));
   const PointCloud map = read_map(arguments.map);
   const MapQuality quality = map_quality(aligned(map, arguments), truth);
   nlohmann::ordered_json json = {{"map", {{"points", map.size()}}}};
@@ -85,6 +87,10 @@ void add_evaluate_map(CLI::App& evaluate) {
   command.add_option("MAP", arguments->map, "the map, PLY")->required();
   command.add_option("--static", arguments->static_truth, "true static surface, PLY")->required();
   command.add_option("--dynamic", arguments->dynamic_truth, "surface swept by moving objects, PLY");
+  command.add_option("--resting",
+                     arguments->resting_truth,
+                     "moved things where they were last seen to stand, PLY: they count on neither "
+                     "side");
   CLI::Option* groundtruth = command.add_option("--groundtruth",
                                                 arguments->groundtruth,
                                                 "true trajectory; with --trajectory it aligns the "

@@ -18,9 +18,11 @@
 #include "stillmap/io/input_files.hpp"
 #include "stillmap/io/ply.hpp"
 #include "tooling/export/floor_plane.hpp"
+#include "tooling/export/mesh_files.hpp"
 #include "tooling/export/occupancy_grid.hpp"
 #include "tooling/export/octree.hpp"
 #include "tooling/export/pcd.hpp"
+#include "tooling/export/surface_mesh.hpp"
 #include "tooling/pipeline/run_folder.hpp"
 
 namespace stillmap {
@@ -34,12 +36,14 @@ struct ExportArguments {
   std::string ply_ascii;
   std::string pcd;
   std::string pcd_ascii;
+  std::string mesh;
   std::string octomap;
   std::string grid;
   bool upright = false;
   std::string camera;
   SpaceOptions space;
   HeightBand band;
+  MeshOptions mesh_options;
 };
 
 struct FormatOption {
@@ -55,6 +59,10 @@ const std::vector<FormatOption>& format_options() {
       {"--ply-ascii", &ExportArguments::ply_ascii, {".ply"}, "the same as text"},
       {"--pcd", &ExportArguments::pcd, {".pcd"}, "the points as binary PCD, for PCL"},
       {"--pcd-ascii", &ExportArguments::pcd_ascii, {".pcd"}, "the same as text"},
+      {"--mesh",
+       &ExportArguments::mesh,
+       {".ply", ".obj", ".glb"},
+       "the surface as triangles with colours, normals and labels"},
       {"--octomap",
        &ExportArguments::octomap,
        {".bt", ".ot"},
@@ -110,8 +118,8 @@ void check_arguments(const ExportArguments& arguments) {
   }
   if (targets.empty()) {
     throw Error(
-        "nothing to export: give one of --ply, --ply-ascii, --pcd, --pcd-ascii, --octomap, "
-        "--grid (see stillmap export --help)");
+        "nothing to export: give one of --ply, --ply-ascii, --pcd, --pcd-ascii, --mesh, "
+        "--octomap, --grid (see stillmap export --help)");
   }
   if (!(arguments.band.min_m < arguments.band.max_m)) {
     throw Error(
@@ -144,6 +152,28 @@ void add_point_files(std::vector<FileContent>& files,
   if (!arguments.pcd_ascii.empty()) {
     files.push_back({arguments.pcd_ascii, encode_pcd(map, PcdFormat::kAscii)});
   }
+}
+
+void add_mesh_file(std::vector<FileContent>& files,
+                   const ExportArguments& arguments,
+                   const PointCloud& map) {
+  if (map.normals.empty()) {
+    throw Error(
+        "--mesh {}: the map has no normals, as maps of older versions and of modes other than "
+        "full; run again, or with --set cloud.fusion=surface",
+        arguments.mesh);
+  }
+  Mesh mesh;
+  try {
+    mesh = surface_mesh(map, arguments.mesh_options);
+  } catch (const Error& error) {
+    throw Error("--mesh-cell {}: {}", arguments.mesh_options.cell_m, error.what());
+  }
+  const std::string suffix = fs::path(arguments.mesh).extension().string();
+  files.push_back({arguments.mesh,
+                   suffix == ".obj"   ? encode_mesh_obj(mesh)
+                   : suffix == ".glb" ? encode_mesh_glb(mesh)
+                                      : encode_mesh_ply(mesh)});
 }
 
 void add_octree_file(std::vector<FileContent>& files,
@@ -191,6 +221,7 @@ void run_export(const ExportArguments& arguments) {
   if (!arguments.grid.empty() || arguments.upright) T_grid_map = find_floor_frame(run);
   if (arguments.upright) transform(run, T_grid_map);
   add_point_files(files, arguments, run.map);
+  if (!arguments.mesh.empty()) add_mesh_file(files, arguments, run.map);
   add_space_files(files, arguments, run, T_grid_map);
   write_files_atomically(files);
   for (const FileContent& file : files) {
@@ -212,6 +243,11 @@ CLI::Validator between(double low, double high) {
 void add_settings(CLI::App& command, ExportArguments& arguments) {
   command
       .add_option("--resolution", arguments.space.resolution_m, "edge of a voxel or cell, metres")
+      ->check(between(0.005, 1))
+      ->capture_default_str();
+  command
+      .add_option(
+          "--mesh-cell", arguments.mesh_options.cell_m, "edge of a cube of the mesh, metres")
       ->check(between(0.005, 1))
       ->capture_default_str();
   command
@@ -258,6 +294,7 @@ void add_export_command(CLI::App& app, CommandResult& /*result*/) {
   command->footer(
       "Examples:\n"
       "  stillmap export result --pcd map.pcd --ply-ascii map.ply\n"
+      "  stillmap export result --mesh room.glb\n"
       "  stillmap export result --octomap map.bt --resolution 0.03 --upright\n"
       "  stillmap export result --grid room.yaml --min-height 0.05 --max-height 1.2\n"
       "  stillmap export result/map.stillmap --ply map.ply\n"

@@ -127,7 +127,11 @@ class TruthFolder {
       : maps_(sequence.camera(), moved) {}
 
   void add(const WrittenFrame& frame, const Eigen::Isometry3d& T_world_camera) {
-    maps_.add(frame.image.color, frame.image.depth, frame.truth.mask, T_world_camera);
+    std::vector<int> moving;
+    for (const TruthFrameObject& object : frame.objects.objects) {
+      if (object.moving) moving.push_back(object.id);
+    }
+    maps_.add(frame.image.color, frame.image.depth, frame.truth.mask, T_world_camera, moving);
     frames_.push_back(frame.objects);
   }
 
@@ -136,6 +140,7 @@ class TruthFolder {
              const std::vector<TruthObject>& objects) const {
     result.write("truth/static_map.ply", encode_ply(maps_.static_map()));
     result.write("truth/dynamic_map.ply", encode_ply(maps_.dynamic_map()));
+    result.write("truth/resting_map.ply", encode_ply(maps_.resting_map()));
     result.write("truth/objects.json", format_objects_json(camera, objects, frames_));
   }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <span>
 
 #include <Eigen/Geometry>
@@ -34,11 +35,13 @@ class TruthMaps {
             const TruthMapOptions& options = {});
 
   /// Adds a frame of a perfect sensor: exact depth at the pixels' centres, 0 if there is none.
-  /// Images have the camera's size.
+  /// Images have the camera's size. `moving_ids` are the objects that move in this frame, in view
+  /// or not.
   void add(const ColorImage& color,
            const DepthImage& depth,
            const ObjectMask& ids,
-           const Eigen::Isometry3d& T_world_camera);
+           const Eigen::Isometry3d& T_world_camera,
+           std::span<const int> moving_ids = {});
 
   /// The static surface, one point per voxel, in the order of voxels. The same frames in the same
   /// order give equal bits.
@@ -47,13 +50,27 @@ class TruthMaps {
   /// The surface swept by moving objects, without points within the clearance of static_map().
   [[nodiscard]] PointCloud dynamic_map() const;
 
+  /// Moved things, people excepted, where they were last seen to stand: there a map may have them
+  /// or not. A thing that was seen to leave its place, and not to stand since, has none. Without
+  /// points within the clearance of static_map().
+  [[nodiscard]] PointCloud resting_map() const;
+
  private:
+  /// A thing where it stands.
+  struct Standing {
+    SurfaceVoxels surface;
+    bool moved_since = false;  ///< it was last seen
+  };
+  void note_motion(std::span<const int> moving_ids);
+  [[nodiscard]] Standing* standing(int id, std::span<const int> moving_ids);
+
   TruthMapOptions options_;
   cv::Mat2f rays_;
   std::array<bool, 256> moved_{};
   int frames_ = 0;
   SurfaceVoxels static_;
   SurfaceVoxels dynamic_;
+  std::map<int, Standing> standing_;  ///< by id
 };
 
 }  // namespace stillmap

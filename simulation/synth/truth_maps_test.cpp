@@ -140,6 +140,36 @@ TEST(TruthMaps, DynamicPointsLieOnWhatMoves) {
   EXPECT_GT(cloud.size(), 3000U);
 }
 
+/// A chair that stands, is pushed in frames 4 to 6, and stands again; a walker who stands still.
+TruthMaps maps_of_push(int frames) {
+  const std::array<int, 2> moved = {kWalker, kChair};
+  const std::array<int, 1> pushed = {kChair};
+  TruthMaps maps(test_camera(), moved, {});
+  for (int frame = 0; frame < frames; ++frame) {
+    const double x = 0.5 + 0.15 * std::clamp(frame - 3, 0, 3);
+    const Images images =
+        look(pose_of(frame), {{kWalker, {-0.8, -0.1, 1.1}, 0.35}, {kChair, {x, -0.5, 1.0}, 0.25}});
+    const bool moves = frame >= 4 && frame <= 6;
+    maps.add(images.color,
+             images.depth,
+             images.ids,
+             pose_of(frame),
+             moves ? std::span<const int>(pushed) : std::span<const int>());
+  }
+  return maps;
+}
+
+TEST(TruthMaps, AMovedThingRestsWhereItWasLastSeenToStand) {
+  for (const auto& [frames, x] : {std::pair(4, 0.5), std::pair(12, 0.95)}) {
+    const PointCloud cloud = maps_of_push(frames).resting_map();
+    EXPECT_GT(cloud.size(), 300U);
+    for (const Eigen::Vector3f& p : cloud.positions) {
+      ASSERT_LT(distance_to_ball(p.cast<double>(), {kChair, {x, -0.5, 1.0}, 0.25}), 2e-6);
+    }
+  }
+  EXPECT_TRUE(maps_of_push(6).resting_map().empty());  // seen to leave, not seen to stand since
+}
+
 TEST(TruthMaps, DynamicPointsKeepAwayFromStaticOnes) {
   const TruthMaps maps = maps_of_walk();
   const PointCloud still = maps.static_map();

@@ -63,7 +63,8 @@ struct FreeSpaceConfig {
                     1000});
     visit("weakly_seen",
           self.weakly_seen,
-          FieldInfo{"number of views up to which a point is removed when one sees motion beside it",
+          FieldInfo{"number of views up to which a point is removed when all that see it see "
+                    "motion beside it",
                     "",
                     0,
                     255});

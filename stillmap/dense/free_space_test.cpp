@@ -131,6 +131,16 @@ TEST(FreeSpace, ALimbThatOneMaskHasMissedGoes) {
   EXPECT_EQ(scene.count(far_box.color, true), scene.count(far_box.color, false));
 }
 
+TEST(FreeSpace, WhatIsSeenOnceWithoutAnybodyBesideItStays) {
+  Scene scene;
+  const Thing lamp{{90, 30, 20, 20}, 1.6F, {0, 250, 0}};
+  scene.look({kStandingPerson, lamp}, kStandingPerson.pixels);  // somebody beside it
+  EXPECT_EQ(scene.count(lamp.color, true), 0U);
+  scene.look({lamp});  // nobody
+  EXPECT_EQ(scene.count(lamp.color, true), scene.count(lamp.color, false));
+  EXPECT_GT(scene.count(lamp.color, true), 100U);
+}
+
 /// The counts of one point, from the definition.
 Sightings brute_force_sightings(const Eigen::Vector3f& point,
                                 std::span<const PosedRange> keyframes,

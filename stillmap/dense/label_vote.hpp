@@ -15,6 +15,8 @@ namespace stillmap {
 /// majority any frequent label may win. The sum of all weights must stay below 65536.
 class LabelVote {
  public:
+  static constexpr std::uint32_t kMostVotes = 65535;  ///< the greatest sum of weights
+
   void add(std::uint8_t label, std::uint16_t weight) {
     if (std::uint16_t* own = counter_of(label)) {
       *own = static_cast<std::uint16_t>(*own + weight);

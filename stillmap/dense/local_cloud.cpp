@@ -14,7 +14,6 @@ namespace stillmap {
 namespace {
 
 constexpr float kSteepest = 1e3F;
-constexpr std::uint32_t kMostVotes = 65535;  // the greatest sum of weights of a LabelVote
 
 /// Sums over the pixels of one point.
 struct PointSum {
@@ -75,7 +74,7 @@ class CellPoints {
       if (!(z[x] > 0 && known)) continue;
       PointSum& point = point_at(z[x]);
       point.add(ray[x], z[x], rgb[x]);
-      if (!images_.labels.empty() && point.count <= kMostVotes) {
+      if (!images_.labels.empty() && point.count <= LabelVote::kMostVotes) {
         point.labels.add(images_.labels(row, x), 1);
       }
     }
@@ -98,6 +97,10 @@ class CellPoints {
 
 }  // namespace
 
+int cell_side(int width_px, const LocalCloudConfig& config) {
+  return std::max(1, (width_px + config.cells_across / 2) / config.cells_across);
+}
+
 PointCloud local_cloud(const cv::Mat1f& depth,
                        const ColorImage& color,
                        const cv::Mat2f& rays,
@@ -106,7 +109,7 @@ PointCloud local_cloud(const cv::Mat1f& depth,
   STILLMAP_CHECK(depth.size() == rays.size() && color.mat.size() == rays.size());
   STILLMAP_CHECK(labels.empty() || labels.mat.size() == rays.size());
   STILLMAP_CHECK(config.cells_across > 0);
-  const int side = std::max(1, (depth.cols + config.cells_across / 2) / config.cells_across);
+  const int side = cell_side(depth.cols, config);
   const Images images{depth, color.mat, rays, labels.mat};
   CellPoints points(images, config);
   PointCloud cloud;

@@ -44,6 +44,9 @@ struct LocalCloudConfig {
   }
 };
 
+/// Edge in pixels of the square cells of local_cloud() in an image of that width.
+[[nodiscard]] int cell_side(int width_px, const LocalCloudConfig& config);
+
 /// The static surface of a frame as points in camera coordinates (metres).
 ///
 /// The points keep these coordinates. A later correction of the view's pose, by bundle adjustment

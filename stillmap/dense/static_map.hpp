@@ -15,6 +15,7 @@
 #include "stillmap/dense/range_image.hpp"
 #include "stillmap/dense/static_depth.hpp"
 #include "stillmap/dense/static_view.hpp"
+#include "stillmap/dense/surface_fusion.hpp"
 #include "stillmap/dense/view_selection.hpp"
 #include "stillmap/geometry/camera.hpp"
 #include "stillmap/perception/motion/dynamics_stage.hpp"
@@ -30,6 +31,8 @@ struct CloudConfig {
   std::string view_frames = "by_mode";
   int view_gap_frames = 4;
   ViewSelectionConfig views;
+  std::string fusion = "by_mode";
+  SurfaceFusionConfig surface;
   std::string free_space = "by_mode";
   RangeImageConfig range;
   FreeSpaceConfig free;
@@ -74,6 +77,17 @@ struct CloudConfig {
                                    0,
                                    1000000}));
     visit.group("views", self.views);
+    visit(
+        "fusion",
+        self.fusion,
+        FieldInfo{"fusion of views. stitch: the mean of the points in each voxel; surface: points "
+                  "on the surface that all views together measure; by_mode: as dynamics.mode "
+                  "says",
+                  "",
+                  0,
+                  0,
+                  {"by_mode", "stitch", "surface"}});
+    visit.group("surface", self.surface);
     visit("free_space",
           self.free_space,
           common_setting(FieldInfo{

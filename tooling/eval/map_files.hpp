@@ -13,7 +13,9 @@ namespace stillmap {
 [[nodiscard]] PointCloud read_map(const std::filesystem::path& file);
 
 /// Reads the true surfaces. Throws Error naming the file, also for a static surface without points.
-[[nodiscard]] MapTruth read_map_truth(const std::filesystem::path& static_file,
-                                      const std::optional<std::filesystem::path>& dynamic_file);
+[[nodiscard]] MapTruth read_map_truth(
+    const std::filesystem::path& static_file,
+    const std::optional<std::filesystem::path>& dynamic_file,
+    const std::optional<std::filesystem::path>& resting_file = {});
 
 }  // namespace stillmap

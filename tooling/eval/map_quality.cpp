@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -75,11 +76,15 @@ std::vector<std::size_t> group_sizes(const std::vector<Cell>& cells) {
   return sizes;
 }
 
+bool is_near(const Eigen::Vector3f& p, const NearestPoints& others) {
+  return others.distance(p, 2 * kMapNear_m) <= kMapNear_m;
+}
+
 GhostFigures ghosts(const Points& map, std::span<const double> to_static_m, const Points& dynamic) {
   const NearestPoints nearest(dynamic);
   std::vector<Cell> cells;
   for (std::size_t i = 0; i < map.size(); ++i) {
-    if (to_static_m[i] > kMapNear_m && nearest.distance(map[i], 2 * kMapNear_m) <= kMapNear_m) {
+    if (to_static_m[i] > kMapNear_m && is_near(map[i], nearest)) {
       cells.push_back(cell_of(map[i]));
     }
   }
@@ -112,11 +117,21 @@ void check_extent(const PointCloud& cloud, const std::string& name) {
 
 MapQuality map_quality(const PointCloud& map, const MapTruth& truth) {
   STILLMAP_CHECK(!truth.static_surface.empty());
-  const Points points = thinned(map.positions, kMapVoxel_m);
+  Points points = thinned(map.positions, kMapVoxel_m);
   const Points surface = thinned(truth.static_surface.positions, kMapVoxel_m);
+  const NearestPoints nearest_static(surface);
+  std::optional<NearestPoints> resting;
+  if (truth.resting && !truth.resting->empty()) {
+    resting.emplace(thinned(truth.resting->positions, kMapVoxel_m));
+  }
+  if (resting) {
+    std::erase_if(points, [&](const Eigen::Vector3f& p) {
+      return is_near(p, *resting) && !is_near(p, nearest_static);
+    });
+  }
   const NearestPoints nearest_map(points);
   const std::vector<double> to_map_m = distances(surface, nearest_map);
-  const std::vector<double> to_static_m = distances(points, NearestPoints(surface));
+  const std::vector<double> to_static_m = distances(points, nearest_static);
 
   MapQuality quality;
   quality.voxels = points.size();
@@ -128,7 +143,10 @@ MapQuality map_quality(const PointCloud& map, const MapTruth& truth) {
     quality.off_ratio_10cm = share_farther(to_static_m, 0.10);
   }
   if (!truth.dynamic) return quality;
-  const Points dynamic = thinned(truth.dynamic->positions, kMapVoxel_m);
+  Points dynamic = thinned(truth.dynamic->positions, kMapVoxel_m);
+  if (resting) {
+    std::erase_if(dynamic, [&](const Eigen::Vector3f& p) { return is_near(p, *resting); });
+  }
   quality.ghosts = ghosts(points, to_static_m, dynamic);
   if (dynamic.empty()) return quality;
   quality.da = share_farther(distances(dynamic, nearest_map), kMapNear_m);

@@ -48,6 +48,9 @@ struct MapQuality {
 struct MapTruth {
   PointCloud static_surface;          ///< not empty
   std::optional<PointCloud> dynamic;  ///< surface swept by moving objects; empty if nothing moved
+  /// Moved things where they were last seen to stand. A map may have them there or not: dynamic
+  /// truth near them does not count, nor do map points near them that are not near static truth.
+  std::optional<PointCloud> resting = std::nullopt;
 };
 
 /// Throws Error, naming the cloud, when a point is not finite or beyond kMapExtent_m.

@@ -85,6 +85,32 @@ TEST(MapQuality, HasTheFiguresWorkedOutByHand) {
   EXPECT_NEAR(quality.ghosts->volume_l, 0.008, 1e-12);
 }
 
+// A chair that stood at rest last: a map with it there and a map without it are equally good.
+TEST(MapQuality, ThingsAtTheirRestingPlacesCountOnNeitherSide) {
+  const PointCloud wall = tiles(0, 0, 0, 20, 10), swept = tiles(0, 0, 50, 20, 10);
+  const PointCloud chair = tiles(0, 0, 50, 4, 10);
+  PointCloud with_chair = wall;
+  add_tiles(with_chair, {0, 0, 50}, 4, 10);
+  const MapTruth truth{wall, swept, chair};
+  for (const PointCloud& map : {wall, with_chair}) {
+    const MapQuality quality = map_quality(map, truth);
+    EXPECT_EQ(quality.voxels, 200U);
+    EXPECT_EQ(quality.sa, 1.0);
+    EXPECT_EQ(quality.da, 1.0);
+    EXPECT_EQ(quality.accuracy_m, 0.0);
+    EXPECT_EQ(quality.ghosts->ratio, 0.0);
+  }
+  EXPECT_GT(map_quality(with_chair, {wall, swept}).ghosts->ratio, 0.1);
+  // Elsewhere it is a ghost all the same; 5 cm around the place do not count.
+  PointCloud elsewhere = wall;
+  add_tiles(elsewhere, {10, 0, 50}, 4, 10);
+  EXPECT_NEAR(*map_quality(elsewhere, truth).ghosts->ratio, 40.0 / 240, 1e-12);
+  // What is near static truth counts, though a thing stands there, too.
+  PointCloud at_the_wall;
+  add_tiles(at_the_wall, {0, 0, 2}, 4, 10);
+  EXPECT_EQ(map_quality(wall, {wall, swept, at_the_wall}).voxels, 200U);
+}
+
 TEST(MapQuality, CountsClustersOfFiftyGhostVoxelsThatTouch) {
   const PointCloud wall = tiles(0, 0, 0, 5, 5);
   PointCloud ghosts;

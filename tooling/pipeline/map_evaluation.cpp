@@ -7,16 +7,23 @@
 #include "tooling/eval/map_files.hpp"
 
 namespace stillmap {
+namespace {
+
+std::optional<std::filesystem::path> if_exists(const std::filesystem::path& file) {
+  return std::filesystem::exists(file) ? std::optional(file) : std::nullopt;
+}
+
+}  // namespace
 
 std::optional<SequenceTruth> read_sequence_truth(const std::filesystem::path& folder) {
-  const std::filesystem::path static_file = folder / "truth" / "static_map.ply";
-  const std::filesystem::path dynamic_file = folder / "truth" / "dynamic_map.ply";
+  const std::filesystem::path truth = folder / "truth";
+  const std::filesystem::path static_file = truth / "static_map.ply";
   const std::filesystem::path groundtruth = folder / "groundtruth.txt";
   if (!path_exists(groundtruth) || !std::filesystem::exists(static_file)) return std::nullopt;
-  const bool with_dynamic = std::filesystem::exists(dynamic_file);
-  return SequenceTruth{.groundtruth = read_trajectory(groundtruth),
-                       .map = read_map_truth(
-                           static_file, with_dynamic ? std::optional(dynamic_file) : std::nullopt)};
+  return SequenceTruth{
+      .groundtruth = read_trajectory(groundtruth),
+      .map = read_map_truth(
+          static_file, if_exists(truth / "dynamic_map.ply"), if_exists(truth / "resting_map.ply"))};
 }
 
 std::optional<MapQuality> run_map_quality(const PointCloud& map,

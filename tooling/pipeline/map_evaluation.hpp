@@ -16,9 +16,9 @@ struct SequenceTruth {
   MapTruth map;
 };
 
-/// From groundtruth.txt, truth/static_map.ply and, where it exists, truth/dynamic_map.ply in the
-/// sequence's folder; nothing when one of the first two is missing. Throws Error for a broken file
-/// or absurd values, and for a static map without points.
+/// From groundtruth.txt, truth/static_map.ply and, where they exist, truth/dynamic_map.ply and
+/// truth/resting_map.ply in the sequence's folder; nothing when one of the first two is missing.
+/// Throws Error for a broken file or absurd values, and for a static map without points.
 [[nodiscard]] std::optional<SequenceTruth> read_sequence_truth(const std::filesystem::path& folder);
 
 /// The quality of a run's map; `estimate` is the run's trajectory, by which the map is aligned.

@@ -61,7 +61,11 @@ constexpr std::array kModes = {
         .doubts = true,
         .depth_stability = DepthStabilityRule::kConfigured,
         .static_matches = StaticMatchRule::kConfigured,
-        .cloud = {.edges = "growing", .islands = "off", .free_space = "on", .missed_people = "on"}},
+        .cloud = {.edges = "growing",
+                  .islands = "off",
+                  .fusion = "surface",
+                  .free_space = "on",
+                  .missed_people = "on"}},
 };
 
 }  // namespace

@@ -55,9 +55,10 @@ enum class StaticMatchRule : std::uint8_t {
 /// The rules of the dense map: what makes a view, what is removed from its depth and later from the
 /// map. The texts are the values of the settings in the group `cloud` that replace "by_mode".
 struct CloudRules {
-  std::string_view edges;       ///< depth edges, Fan 2020, Eqs. (11)-(12)
-  std::string_view islands;     ///< small patches of depth, Fan 2020, Eq. (13)
-  std::string_view free_space;  ///< points that later views see through
+  std::string_view edges;              ///< depth edges, Fan 2020, Eqs. (11)-(12)
+  std::string_view islands;            ///< small patches of depth, Fan 2020, Eq. (13)
+  std::string_view fusion = "stitch";  ///< views into one cloud: "stitch" or "surface"
+  std::string_view free_space;         ///< points that later views see through
   /// Surface where a person that the network missed in the view's frame must have been.
   std::string_view missed_people = "off";
   std::string_view view_frames = "all";  ///< frames that may become views, Fan 2020, Eq. (1)
