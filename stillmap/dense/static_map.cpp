@@ -21,7 +21,7 @@ CloudConfig CloudConfig::resolved_for(const CloudRules& rules) const {
   CloudConfig config = *this;
   if (depth.edges == "by_mode") config.depth.edges = rules.edges;
   if (depth.islands == "by_mode") config.depth.islands = rules.islands;
-  if (fusion == "by_mode") config.fusion = rules.fusion;
+  if (fusion.rule == "by_mode") config.fusion.rule = rules.fusion;
   if (free_space == "by_mode") config.free_space = rules.free_space;
   if (missed_people == "by_mode") config.missed_people = rules.missed_people;
   if (view_frames == "by_mode") config.view_frames = rules.view_frames;
@@ -53,13 +53,13 @@ PointCloud static_map(std::span<const PosedView> views,
     ranges.push_back({posed.T_world_camera, &posed.view->range});
   }
   PointCloud all = global_cloud(clouds, config.voxel_size_m, threads);
-  if (config.fusion == "surface") {
+  if (config.fusion.rule == "surface") {
     all = fused_surface(all,
                         clouds,
                         camera,
                         cell_side(camera.width_px, config.local),
                         config.voxel_size_m,
-                        config.surface,
+                        config.fusion.surface,
                         threads);
   }
   if (config.free_space != "on") return all;

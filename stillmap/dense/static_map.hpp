@@ -31,8 +31,7 @@ struct CloudConfig {
   std::string view_frames = "by_mode";
   int view_gap_frames = 4;
   ViewSelectionConfig views;
-  std::string fusion = "by_mode";
-  SurfaceFusionConfig surface;
+  FusionConfig fusion;
   std::string free_space = "by_mode";
   RangeImageConfig range;
   FreeSpaceConfig free;
@@ -77,17 +76,7 @@ struct CloudConfig {
                                    0,
                                    1000000}));
     visit.group("views", self.views);
-    visit(
-        "fusion",
-        self.fusion,
-        FieldInfo{"fusion of views. stitch: the mean of the points in each voxel; surface: points "
-                  "on the surface that all views together measure; by_mode: as dynamics.mode "
-                  "says",
-                  "",
-                  0,
-                  0,
-                  {"by_mode", "stitch", "surface"}});
-    visit.group("surface", self.surface);
+    FusionConfig::fields(self.fusion, visit);
     visit("free_space",
           self.free_space,
           common_setting(FieldInfo{

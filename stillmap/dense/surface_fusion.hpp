@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <span>
+#include <string>
 
 #include "stillmap/core/fields.hpp"
 #include "stillmap/core/point_cloud.hpp"
@@ -53,6 +54,27 @@ struct SurfaceFusionConfig {
     visit("gate_sigmas",
           self.gate_sigmas,
           FieldInfo{"number of deviations in the distance of gate_m", "", 0, 100});
+  }
+};
+
+/// How views become one cloud.
+struct FusionConfig {
+  std::string rule = "by_mode";
+  SurfaceFusionConfig surface;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit(
+        "fusion",
+        self.rule,
+        FieldInfo{"fusion of views. stitch: the mean of the points in each voxel; surface: points "
+                  "on the surface that all views together measure; by_mode: as dynamics.mode "
+                  "says",
+                  "",
+                  0,
+                  0,
+                  {"by_mode", "stitch", "surface"}});
+    visit.group("surface", self.surface);
   }
 };
 

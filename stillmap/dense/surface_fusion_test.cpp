@@ -82,7 +82,7 @@ const Plane kSlanting{Eigen::Vector3d(0.6, 0, -0.8).normalized(), -2.4};
 
 TEST(SurfaceFusion, ManyNoisyViewsMakeOneThinWall) {
   for (const Plane& plane : {kWall, kSlanting}) {
-    const NoisyViews views(plane, 12, 0.003);
+    const NoisyViews views(plane, 12, 0.0015);
     const PointCloud fused = views.fused();
     // The mean of 12 views has at most a third of the noise of one.
     EXPECT_LT(rms(fused, plane), rms(views.stitched(), plane) / 3);
@@ -96,11 +96,15 @@ TEST(SurfaceFusion, NormalsStandOnTheSurfaceAndFaceTheCameras) {
     const PointCloud fused = NoisyViews(plane, 12, 0.0015).fused();
     ASSERT_EQ(fused.normals.size(), fused.size());
     double sum = 0;
+    std::size_t count = 0;
     for (const Eigen::Vector3f& normal : fused.normals) {
-      EXPECT_NEAR(normal.norm(), 1, 1e-4);
+      if (normal.isZero()) continue;  // no view measures surface there: the noise of one pixel
+      ASSERT_NEAR(normal.norm(), 1, 1e-4);
       sum += normal.cast<double>().dot(plane.normal);
+      ++count;
     }
-    EXPECT_GT(sum / static_cast<double>(fused.size()), std::cos(0.12));  // 7 degrees
+    EXPECT_GT(count, fused.size() * 95 / 100);
+    EXPECT_GT(sum / static_cast<double>(count), std::cos(0.12));  // 7 degrees
   }
 }
 
