@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "tooling/devices/device.hpp"
+
+namespace stillmap {
+
+/// Opens the device that a text names: "openni2:0", the first camera that OpenNI2 finds, or
+/// "openni2:URI". Throws Error, beginning with the text, for another text, and as
+/// open_openni_device() does.
+[[nodiscard]] std::unique_ptr<Device> open_device(const std::string& text);
+
+}  // namespace stillmap
