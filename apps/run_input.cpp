@@ -108,7 +108,11 @@ void RunInput::open_device_input(const RunArguments& arguments, Clock& clock) {
   DeviceStreamOptions options;
   const std::string& camera = arguments.sequence.camera;
   if (!camera.empty()) options.camera = camera_by_name(camera);
-  device_ = option_value("--device", arguments.device, open_device);
+  const bool registered = !options.camera || !options.camera->depth_camera;
+  device_ = option_value("--device", arguments.device, [&](const std::string& text) {
+    return open_device(text, registered);
+  });
+  warnings_ = device_->warnings();
   options.begin_s = time_of_day_s();
   options.stopped = interruption_noted;
   options.tell = [](const std::string& line) { ProgressBar("frames").warn(line); };

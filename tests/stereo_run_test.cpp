@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A rendered scene as RGB-D and as stereo pairs.
+#include <sstream>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -27,6 +28,24 @@ class StereoRun : public Cli {
     return report_of_run(options)["ate"]["rmse"];
   }
 
+  // The true poses of the stereo sequence, ten times as far from the origin.
+  [[nodiscard]] std::string ten_times_as_far() const {
+    std::istringstream rows(content("office/mav0/state_groundtruth_estimate0/data.csv"));
+    std::string result, row;
+    std::getline(rows, result);
+    result += "\n";
+    while (std::getline(rows, row)) {
+      std::istringstream columns(row);
+      std::string column;
+      for (int i = 0; std::getline(columns, column, ','); ++i) {
+        const bool position = i >= 1 && i <= 3;
+        result += (i > 0 ? "," : "") + (position ? std::to_string(10 * std::stod(column)) : column);
+      }
+      result += "\n";
+    }
+    return result;
+  }
+
   static constexpr int kFrames = 40;
 };
 
@@ -44,6 +63,20 @@ TEST_F(StereoRun, IsNearlyAsGoodAsRgbd) {
   EXPECT_THAT(content("out/config.yaml"), HasSubstr("inverse_depth_sigma: 0.037"));
   (void)ate_of_run(objects + "--format euroc --set measurement.inverse_depth_sigma=0.02");
   EXPECT_THAT(content("out/config.yaml"), HasSubstr("inverse_depth_sigma: 0.02 "));
+}
+
+// With ten times the baseline the same images show a scene ten times as large, which is tracked
+// with ten times the error.
+TEST_F(StereoRun, MayBeOfALargeScene) {
+  ASSERT_EQ(run("synth office --scene empty --frames 40 --size 320x240 --assets none --stereo 0.1")
+                .exit_code,
+            0);
+  const double near_m = ate_of_run("--format euroc");
+  std::string right = content("office/mav0/cam1/sensor.yaml");
+  right.replace(right.find("0, 0, 0.1, 0"), 12, "0, 0, 1.0, 0");
+  write("office/mav0/cam1/sensor.yaml", right);
+  write("office/mav0/state_groundtruth_estimate0/data.csv", ten_times_as_far());
+  EXPECT_LT(ate_of_run("--format euroc"), 15 * near_m);
 }
 
 }  // namespace

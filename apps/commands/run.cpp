@@ -37,13 +37,15 @@ namespace {
 
 constexpr int kLostForGood = 3;
 constexpr int kInterrupted = 4;
+constexpr double kMaxDepthM = 100;  // of settings
 
 // `noise`: of stereo pairs, whose depth is not as exact as that of a depth camera.
 SystemConfig make_config(const RunArguments& arguments, const std::optional<DepthNoise>& noise) {
   SystemConfig config;
   if (noise) {
     config.measurement.inverse_depth_sigma = noise->inverse_depth_sigma;
-    config.measurement.max_depth_m = noise->max_depth_m;
+    config.measurement.max_depth_m = std::min(noise->max_depth_m, kMaxDepthM);
+    config.mapping.creation.max_depth_m = std::min(noise->max_depth_m, kMaxDepthM);
   }
   const std::vector<FieldRef> fields = list_fields(config);
   if (!arguments.config_file.empty()) load_yaml(fields, arguments.config_file);

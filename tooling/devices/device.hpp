@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "stillmap/core/images.hpp"
 #include "stillmap/geometry/camera.hpp"
@@ -36,6 +37,9 @@ class Device {
   /// `timeout_s`, and that long where none come, also while the device is unplugged: a later call
   /// may give images again. Throws Error for a device that will never give images again.
   [[nodiscard]] virtual std::optional<DeviceImages> wait(double timeout_s) = 0;
+
+  /// What is wrong with it from the beginning, a line each.
+  [[nodiscard]] virtual std::vector<std::string> warnings() const { return {}; }
 
   /// Whether there will be no more images, as at the end of a file that stands for a device.
   [[nodiscard]] virtual bool ended() const { return false; }

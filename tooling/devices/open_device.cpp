@@ -8,9 +8,11 @@
 
 namespace stillmap {
 
-std::unique_ptr<Device> open_device(const std::string& text) {
+std::unique_ptr<Device> open_device(const std::string& text, bool registered) {
   constexpr std::string_view kOpenNi = "openni2:";
-  if (text.starts_with(kOpenNi)) return open_openni_device(text.substr(kOpenNi.size()), text);
+  if (text.starts_with(kOpenNi)) {
+    return open_openni_device(text.substr(kOpenNi.size()), text, registered);
+  }
   throw Error("{}: unknown device, expected openni2:NUMBER or openni2:URI", text);
 }
 

@@ -10,22 +10,20 @@
 #include <charconv>
 #include <chrono>
 #include <cmath>
-#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <deque>
-#include <mutex>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include <OpenNI.h>
+#include <fmt/core.h>
+
+#include "tooling/devices/openni_plug.hpp"
 
 namespace stillmap {
 namespace {
-
-using SteadyTime = std::chrono::steady_clock::time_point;
 
 // What the library says of its last failure, in one line.
 std::string library_text() {
@@ -37,12 +35,19 @@ std::string library_text() {
   return text;
 }
 
-// May be called several times. The library is never shut down: a driver that Debian ships with it
-// crashes then, and devices are closed one by one.
-void start_library() {
-  if (openni::OpenNI::initialize() == openni::STATUS_OK) return;
-  throw Error("OpenNI2 does not start: {}", library_text());
-}
+/// The library, as long as anybody uses it.
+class Library {
+ public:
+  Library() {
+    if (openni::OpenNI::initialize() == openni::STATUS_OK) return;
+    const std::string text = library_text();
+    openni::OpenNI::shutdown();
+    throw Error("OpenNI2 does not start: {}", text);
+  }
+  Library(const Library&) = delete;
+  Library& operator=(const Library&) = delete;
+  ~Library() { openni::OpenNI::shutdown(); }
+};
 
 std::vector<std::string> connected_uris() {
   openni::Array<openni::DeviceInfo> found;
@@ -52,10 +57,9 @@ std::vector<std::string> connected_uris() {
   return uris;
 }
 
-// The URI of the device that is asked for. Starts the library.
+// The URI of the device that is asked for.
 std::string uri_of(const std::string& which, const std::string& name) {
   std::size_t index = 0;
-  start_library();
   const auto [end, status] = std::from_chars(which.data(), which.data() + which.size(), index);
   if (which.empty()) throw Error("{}: expected openni2:NUMBER or openni2:URI", name);
   if (status != std::errc() || end != which.data() + which.size()) return which;
@@ -68,66 +72,6 @@ std::string uri_of(const std::string& which, const std::string& name) {
               uris.size(),
               listed.empty() ? "" : ":" + listed);
 }
-
-// "1d27/0601@1/5": what it is, without where it is plugged in.
-std::string_view kind_of(std::string_view uri) {
-  return uri.substr(0, uri.find('@'));
-}
-
-/// Notes when a device is plugged in or out. The library calls it on threads of its own.
-class Plug : public openni::OpenNI::DeviceConnectedListener,
-             public openni::OpenNI::DeviceDisconnectedListener {
- public:
-  explicit Plug(std::string uri) : uri_(std::move(uri)) {
-    openni::OpenNI::addDeviceConnectedListener(this);
-    openni::OpenNI::addDeviceDisconnectedListener(this);
-  }
-  Plug(const Plug&) = delete;
-  Plug& operator=(const Plug&) = delete;
-  ~Plug() {
-    openni::OpenNI::removeDeviceConnectedListener(this);
-    openni::OpenNI::removeDeviceDisconnectedListener(this);
-  }
-
-  [[nodiscard]] std::string uri() const {
-    const std::lock_guard lock(mutex_);
-    return uri_;
-  }
-  [[nodiscard]] bool plugged_in() const {
-    const std::lock_guard lock(mutex_);
-    return plugged_in_;
-  }
-  /// Returns whether it is plugged in by then.
-  [[nodiscard]] bool wait_until(SteadyTime time) {
-    std::unique_lock lock(mutex_);
-    return changed_.wait_until(lock, time, [&] { return plugged_in_; });
-  }
-  /// Returns when it is plugged in or out, or at that time.
-  void wait_for_change(SteadyTime time) {
-    std::unique_lock lock(mutex_);
-    changed_.wait_until(lock, time, [this, before = plugged_in_] { return plugged_in_ != before; });
-  }
-
- private:
-  void onDeviceConnected(const openni::DeviceInfo* device) override {
-    const std::lock_guard lock(mutex_);
-    if (plugged_in_ || kind_of(device->getUri()) != kind_of(uri_)) return;
-    uri_ = device->getUri();
-    plugged_in_ = true;
-    changed_.notify_all();
-  }
-  void onDeviceDisconnected(const openni::DeviceInfo* device) override {
-    const std::lock_guard lock(mutex_);
-    if (uri_ != device->getUri()) return;
-    plugged_in_ = false;
-    changed_.notify_all();
-  }
-
-  mutable std::mutex mutex_;
-  std::condition_variable changed_;
-  std::string uri_;
-  bool plugged_in_ = true;
-};
 
 bool is_depth(const openni::VideoMode& mode) {
   return mode.getPixelFormat() == openni::PIXEL_FORMAT_DEPTH_1_MM ||
@@ -178,7 +122,7 @@ cv::Mat_<Pixel> pixels_of(const openni::VideoFrameRef& frame) {
   cv::Mat_<Pixel> pixels(frame.getHeight(), frame.getWidth());
   const auto* row = static_cast<const std::byte*>(frame.getData());
   for (int v = 0; v < pixels.rows; ++v, row += frame.getStrideInBytes()) {
-    std::memcpy(pixels[v], row, sizeof(Pixel) * static_cast<std::size_t>(pixels.cols));
+    std::memcpy(pixels.ptr(v), row, sizeof(Pixel) * static_cast<std::size_t>(pixels.cols));
   }
   return pixels;
 }
@@ -189,8 +133,8 @@ double seconds_of(const openni::VideoFrameRef& frame) {
 
 class OpenNiDevice : public Device {
  public:
-  OpenNiDevice(const std::string& which, std::string name)
-      : name_(std::move(name)), plug_(uri_of(which, name_)) {
+  OpenNiDevice(const std::string& which, std::string name, bool registered)
+      : name_(std::move(name)), registered_(registered), plug_(uri_of(which, name_)) {
     open();
   }
   ~OpenNiDevice() override { close(); }
@@ -198,10 +142,12 @@ class OpenNiDevice : public Device {
   [[nodiscard]] const std::string& name() const override { return name_; }
   [[nodiscard]] std::optional<CameraModel> camera() const override { return camera_; }
   [[nodiscard]] std::optional<DeviceImages> wait(double timeout_s) override;
+  [[nodiscard]] std::vector<std::string> warnings() const override { return warnings_; }
 
  private:
   void open();
   void start(openni::VideoStream& stream, openni::SensorType sensor, openni::VideoMode mode);
+  void register_depth();
   void read_camera(const openni::VideoMode& mode);
   void close();
   [[nodiscard]] bool open_again(SteadyTime until);
@@ -212,7 +158,9 @@ class OpenNiDevice : public Device {
   [[nodiscard]] DeviceImages images_of(const openni::VideoFrameRef& color,
                                        const openni::VideoFrameRef& depth) const;
 
+  Library library_;  // first member: the others use it
   std::string name_;
+  bool registered_;  // as asked for
   Plug plug_;
   openni::Device device_;
   openni::VideoStream color_stream_, depth_stream_;
@@ -222,6 +170,7 @@ class OpenNiDevice : public Device {
   std::optional<CameraModel> camera_;
   double depth_factor_ = 1000;
   double same_time_s_ = 0;  // greatest difference between the stamps of images of one moment
+  std::vector<std::string> warnings_;
   bool opened_ = false;
 };
 
@@ -232,10 +181,7 @@ void OpenNiDevice::open() {
   const auto [color, depth] = choose_modes(device_, name_);
   start(color_stream_, openni::SENSOR_COLOR, color);
   start(depth_stream_, openni::SENSOR_DEPTH, depth);
-  const auto registered = openni::IMAGE_REGISTRATION_DEPTH_TO_COLOR;
-  if (device_.isImageRegistrationModeSupported(registered)) {
-    device_.setImageRegistrationMode(registered);
-  }
+  register_depth();
   device_.setDepthColorSyncEnabled(true);  // where it can; images are paired by stamps anyway
   depth_factor_ = depth.getPixelFormat() == openni::PIXEL_FORMAT_DEPTH_1_MM ? 1000 : 10000;
   same_time_s_ = 0.6 / std::max(1, std::min(color.getFps(), depth.getFps()));
@@ -266,6 +212,19 @@ void OpenNiDevice::start(openni::VideoStream& stream,
   }
 }
 
+void OpenNiDevice::register_depth() {
+  const auto mode =
+      registered_ ? openni::IMAGE_REGISTRATION_DEPTH_TO_COLOR : openni::IMAGE_REGISTRATION_OFF;
+  const bool done = device_.isImageRegistrationModeSupported(mode) &&
+                    device_.setImageRegistrationMode(mode) == openni::STATUS_OK;
+  warnings_.clear();
+  if (done || !registered_) return;
+  warnings_.push_back(
+      fmt::format("{} does not register its depth to colour; name a camera with a depth camera of "
+                  "its own (--camera), or the map will be smeared",
+                  name_));
+}
+
 void OpenNiDevice::read_camera(const openni::VideoMode& mode) {
   const double across = static_cast<double>(color_stream_.getHorizontalFieldOfView());
   const double down = static_cast<double>(color_stream_.getVerticalFieldOfView());
@@ -286,6 +245,10 @@ void OpenNiDevice::read_camera(const openni::VideoMode& mode) {
 void OpenNiDevice::close() {
   color_.clear();
   depth_.clear();
+  color_stream_.stop();
+  depth_stream_.stop();
+  // Threads of some drivers, such as that of "Dummy", use a stream for some time after stop().
+  if (opened_) plug_.wait_for_change(SteadyTime::clock::now() + std::chrono::milliseconds(100));
   color_stream_.destroy();
   depth_stream_.destroy();
   device_.close();
@@ -371,8 +334,10 @@ bool has_openni() {
   return true;
 }
 
-std::unique_ptr<Device> open_openni_device(const std::string& which, const std::string& name) {
-  return std::make_unique<OpenNiDevice>(which, name);
+std::unique_ptr<Device> open_openni_device(const std::string& which,
+                                           const std::string& name,
+                                           bool registered) {
+  return std::make_unique<OpenNiDevice>(which, name, registered);
 }
 
 }  // namespace stillmap
@@ -385,7 +350,9 @@ bool has_openni() {
   return false;
 }
 
-std::unique_ptr<Device> open_openni_device(const std::string& /*which*/, const std::string& name) {
+std::unique_ptr<Device> open_openni_device(const std::string& /*which*/,
+                                           const std::string& name,
+                                           bool /*registered*/) {
   throw Error("{}: this build has no OpenNI2; install libopenni2-dev and configure and build again",
               name);
 }
