@@ -356,8 +356,8 @@ void add_run_command(CLI::App& app, CommandResult& result) {
       "  stillmap run office --out again --live --replay live/live.jsonl\n"
       "  stillmap run --device openni2:0 --out live --save-recording kept\n"
       "Exit code 3 says that tracking was lost for good, 4 that Ctrl-C or SIGTERM ended the run: "
-      "the\nresults are whole, but end before the sequence does. A second Ctrl-C ends at once.\nA "
-      "run on a device ends with Ctrl-C and exit code 0.");
+      "the\nresults are whole, but end before the sequence does. A second Ctrl-C ends at once.\n"
+      "Of a run on a device Ctrl-C is the usual end.");
   command->callback([arguments, &result] { result.exit_code = run(*arguments); });
 }
 
