@@ -12,13 +12,13 @@
 
 namespace stillmap {
 
-void add_sequence_options(CLI::App& command, SequenceArguments& arguments) {
+CLI::Option* add_sequence_options(CLI::App& command, SequenceArguments& arguments) {
   std::vector<std::string> formats, units;
   for (const SequenceFormat& format : recording_formats()) formats.emplace_back(format.name);
   for (const StampUnitName& unit : kStampUnitNames) units.emplace_back(unit.option);
-  command
-      .add_option("SEQUENCE", arguments.path, "recording: a folder or a bag, see docs/inputs.md")
-      ->required();
+  CLI::Option* const sequence = command.add_option(
+      "SEQUENCE", arguments.path, "recording: a folder or a bag, see docs/inputs.md");
+  sequence->required();
   command
       .add_option("--format",
                   arguments.format,
@@ -36,6 +36,7 @@ void add_sequence_options(CLI::App& command, SequenceArguments& arguments) {
       ->check(CLI::IsMember(units));
   command.add_option("--color-topic", arguments.color_topic, "of a bag with several");
   command.add_option("--depth-topic", arguments.depth_topic, "of a bag with several");
+  return sequence;
 }
 
 SequenceOptions sequence_options(const SequenceArguments& arguments) {

@@ -20,8 +20,9 @@ struct SequenceArguments {
   std::string depth_topic;
 };
 
-/// Adds SEQUENCE, --format, --rate, --stamps and the topics of a bag.
-void add_sequence_options(CLI::App& command, SequenceArguments& arguments);
+/// Adds SEQUENCE, --format, --rate, --stamps and the topics of a bag. Returns SEQUENCE, which is
+/// required.
+CLI::Option* add_sequence_options(CLI::App& command, SequenceArguments& arguments);
 
 /// What the options say of how the recording is read.
 [[nodiscard]] SequenceOptions sequence_options(const SequenceArguments& arguments);

@@ -3,8 +3,12 @@
 # installed, else from headers and libraries alone. Debian puts the CMake package into libopencv-dev,
 # which pulls in some 500 MB (GDAL, VTK, Qt) that nothing here uses.
 set(stillmap_opencv_modules core imgproc)
+if(STILLMAP_BUILD_TOOLING) # depth of stereo pairs
+  list(APPEND stillmap_opencv_modules calib3d)
+endif()
 if(STILLMAP_BUILD_TESTS) # what ours is compared with
   list(APPEND stillmap_opencv_modules features2d calib3d)
+  list(REMOVE_DUPLICATES stillmap_opencv_modules)
 endif()
 find_package(OpenCV 4.5 CONFIG QUIET COMPONENTS ${stillmap_opencv_modules})
 if(NOT OpenCV_FOUND)

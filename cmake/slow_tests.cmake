@@ -4,6 +4,7 @@
 # of processor time together (`make test-fast`).
 set(stillmap_slow_tests_config LoadYaml.*)
 set(stillmap_slow_tests_dense FreeSpace.* System.* ViewChoice.* VoxelGrid.AgreesWith*)
+set(stillmap_slow_tests_devices OpenNiDevice.*)
 set(stillmap_slow_tests_detections DetectionsFolder.Re*)
 set(stillmap_slow_tests_eval SeeThrough.* StitchedMap.*)
 set(stillmap_slow_tests_export FindFloor.* MakeOccupancyGrid.*)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ctrl-C and SIGTERM, sent to the program in the middle of a live run.
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <csignal>
@@ -20,23 +21,29 @@
 
 #include "tests/support/cli_fixture.hpp"
 #include "tests/support/plane_sequence.hpp"
+#include "tooling/devices/openni_device.hpp"
 
 namespace stillmap {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 class Interruption : public Cli {
  protected:
   Interruption() { write_plane_sequence(folder_ / "wall", 40); }
 
-  // Starts "stillmap run wall --live" at a quarter of the speed, five seconds in all, and returns
-  // when some frames have been taken: a second after the results' folder has been begun.
+  // "stillmap run wall --live" at a quarter of the speed: five seconds in all.
+  static inline const std::vector<std::string> kSlowRun = {
+      "run", "wall", "--live", "--speed", "0.25", "--out", "out"};
+
+  // Starts a run of the program and returns when some frames have been taken: a second after the
+  // results' folder has been begun.
   void start(const std::vector<std::string>& options) {
     const int watch = inotify_init1(IN_CLOEXEC);
     ASSERT_GE(inotify_add_watch(watch, folder_.c_str(), IN_CREATE), 0);
     const std::string program = STILLMAP_BINARY_DIR "/bin/stillmap";
-    std::vector<std::string> arguments = {program, "run", "wall", "--live", "--speed", "0.25"};
+    std::vector<std::string> arguments = {program};
     arguments.insert(arguments.end(), options.begin(), options.end());
     const std::string out = (folder_ / "stdout.txt").string();
     const std::string err = (folder_ / "stderr.txt").string();
@@ -97,7 +104,7 @@ class Interruption : public Cli {
 
 TEST_F(Interruption, EndsARunAsIfTheSequenceHadEnded) {
   for (const int signal_number : {SIGINT, SIGTERM}) {
-    start({"--out", "out"});
+    start(kSlowRun);
     interrupt(signal_number);
     const int status = wait_for_end();
     ASSERT_TRUE(WIFEXITED(status));
@@ -117,8 +124,36 @@ TEST_F(Interruption, EndsARunAsIfTheSequenceHadEnded) {
   }
 }
 
+// A camera's frames have no other end, so that this one is no interruption (exit code 4). OpenNI2's
+// own device without hardware gives hardly any depth: nothing is tracked (exit code 3).
+TEST_F(Interruption, IsTheEndOfARunOnADevice) {
+  if (!has_openni()) GTEST_SKIP() << "built without libopenni2-dev";
+  write("camera.yaml", "width: 320\nheight: 240\nfx: 280\nfy: 280\ncx: 160\ncy: 120\n");
+  start({"run",
+         "--device",
+         "openni2:Dummy",
+         "--camera",
+         "camera.yaml",
+         "--out",
+         "out",
+         "--save-recording",
+         "kept"});
+  interrupt(SIGINT);
+  const int status = wait_for_end();
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 3) << content("stderr.txt");
+  EXPECT_THAT(content("stderr.txt"), Not(HasSubstr("interrupted")));
+  const std::string record = content("out/live.jsonl");
+  const auto taken = std::ranges::count(record, '\n');
+  EXPECT_GT(taken, 3);
+  EXPECT_THAT(content("stdout.txt"), HasSubstr("input       openni2:Dummy, 320x240"));
+  EXPECT_THAT(content("stdout.txt"), HasSubstr("frames in kept"));
+  ASSERT_EQ(run("run kept --out again --live --replay out/live.jsonl").exit_code, 3);
+  EXPECT_EQ(content("again/live.jsonl"), record);
+}
+
 TEST_F(Interruption, ASecondSignalEndsTheProgramAtOnce) {
-  start({"--out", "out"});
+  start(kSlowRun);
   interrupt(SIGINT);
   ASSERT_EQ(kill(child_, SIGTERM), 0);
   const int status = wait_for_end();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <iterator>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,13 +12,13 @@
 #include "apps/command_inputs.hpp"
 #include "apps/commands.hpp"
 #include "apps/image_names.hpp"
-#include "apps/interruptible_stream.hpp"
 #include "apps/interruption.hpp"
 #include "apps/option_value.hpp"
+#include "apps/run_arguments.hpp"
 #include "apps/run_evaluation.hpp"
+#include "apps/run_input.hpp"
 #include "apps/run_progress.hpp"
 #include "apps/run_summary.hpp"
-#include "apps/sensor_camera.hpp"
 #include "apps/sequence_option.hpp"
 #include "apps/steady_clock.hpp"
 #include "apps/version.hpp"
@@ -26,11 +26,8 @@
 #include "stillmap/core/error.hpp"
 #include "stillmap/core/joined.hpp"
 #include "stillmap/io/atomic_file.hpp"
-#include "stillmap/sensor/groundtruth.hpp"
-#include "stillmap/sensor/sequence_stream.hpp"
 #include "stillmap/session/session_io.hpp"
 #include "tooling/pipeline/inpainted_folder.hpp"
-#include "tooling/pipeline/map_evaluation.hpp"
 #include "tooling/pipeline/object_folder.hpp"
 #include "tooling/pipeline/run_folder.hpp"
 #include "tooling/pipeline/run_sequence.hpp"
@@ -40,31 +37,16 @@ namespace {
 
 constexpr int kLostForGood = 3;
 constexpr int kInterrupted = 4;
+constexpr double kMaxDepthM = 100;  // of settings
 
-struct RunArguments {
-  SequenceArguments sequence;
-  std::string out;
-  std::string config_file;
-  std::vector<std::string> settings;
-  std::optional<double> depth_factor;
-  std::string segmenter;  // empty: auto where its networks are, else none
-  std::string dynamics;   // empty: as configured
-  std::string frames;
-  std::size_t stride = 1;
-  int threads = 2;
-  bool live = false;
-  double speed = 1;
-  std::string replay;
-  std::string load;
-  bool localize_only = false;
-  std::string groundtruth;
-  std::string poses = "estimated";
-  std::string objects_out;
-  std::string inpainted;
-};
-
-SystemConfig make_config(const RunArguments& arguments) {
+// `noise`: of stereo pairs, whose depth is not as exact as that of a depth camera.
+SystemConfig make_config(const RunArguments& arguments, const std::optional<DepthNoise>& noise) {
   SystemConfig config;
+  if (noise) {
+    config.measurement.inverse_depth_sigma = noise->inverse_depth_sigma;
+    config.measurement.max_depth_m = std::min(noise->max_depth_m, kMaxDepthM);
+    config.mapping.creation.max_depth_m = std::min(noise->max_depth_m, kMaxDepthM);
+  }
   const std::vector<FieldRef> fields = list_fields(config);
   if (!arguments.config_file.empty()) load_yaml(fields, arguments.config_file);
   for (const std::string& setting : arguments.settings) set_value(fields, setting, "--set");
@@ -73,6 +55,10 @@ SystemConfig make_config(const RunArguments& arguments) {
   }
   config.check();
   return config;
+}
+
+bool is_live(const RunArguments& arguments) {
+  return arguments.live || !arguments.device.empty();
 }
 
 /// What finds people and things, and how that is said.
@@ -94,12 +80,12 @@ ChosenSegmenter default_segmenter(cv::Size image, const SegmenterOptions& option
 }
 
 ChosenSegmenter choose_segmenter(const RunArguments& arguments,
-                                 const Sequence& sequence,
-                                 const CameraModel& camera,
+                                 RunInput& input,
                                  const DynamicsMode& mode) {
+  const CameraModel& camera = input.frames().camera();
   const cv::Size image(camera.width_px, camera.height_px);
-  const SegmenterOptions options{.threads = arguments.live ? 1 : 2,
-                                 .image_names = image_names(sequence.entries())};
+  const SegmenterOptions options{.threads = is_live(arguments) ? 1 : 2,
+                                 .image_names = image_names(input.entries())};
   const std::string& asked = arguments.segmenter;
   if (asked == "none" || (asked.empty() && !mode.judges)) return {nullptr, "none, as asked for"};
   if (asked.empty()) return default_segmenter(image, options);
@@ -118,9 +104,9 @@ std::unique_ptr<RunFolder> prepare_out(const RunArguments& arguments) {
 }
 
 // No file that the run reads may be one that it writes.
-void check_outputs(const RunArguments& arguments, const Sequence& sequence) {
+void check_outputs(const RunArguments& arguments, const RunInput& input) {
   InputFiles inputs;
-  add_sequence(inputs, arguments.sequence.path, sequence.entries());
+  if (!input.is_device()) add_sequence(inputs, arguments.sequence.path, input.entries());
   add_segmenter(inputs, arguments.segmenter);
   add_camera(inputs, arguments.sequence.camera);
   for (const std::string& file :
@@ -148,60 +134,16 @@ void check_outputs(const RunArguments& arguments, const Sequence& sequence) {
   }
 }
 
-// The true poses that the options name, or the recording's own; none where they cannot be used.
-GroundTruth read_groundtruth(const RunArguments& arguments, const Sequence& sequence) {
-  if (arguments.groundtruth == "none") return {};
-  if (arguments.groundtruth.empty()) return sequence.groundtruth().value_or(GroundTruth{});
-  if (!path_exists(arguments.groundtruth)) {
-    throw Error("--groundtruth {}: no such file", arguments.groundtruth);
-  }
-  return read_groundtruth(arguments.groundtruth, sequence_options(arguments.sequence).reading);
-}
-
-FrameSelection selected_frames(const RunArguments& arguments) {
-  FrameSelection selection;
-  if (!arguments.frames.empty()) {
-    selection = option_value("--frames", arguments.frames, parse_frames);
-  }
-  selection.stride = arguments.stride;
-  return selection;
-}
-
 std::optional<LiveOptions> live_options(const RunArguments& arguments) {
-  if (!arguments.live) return std::nullopt;
+  if (!is_live(arguments)) return std::nullopt;
   LiveOptions live;
+  live.arriving = !arguments.device.empty();
   live.speed = arguments.speed;
   if (!arguments.replay.empty()) {
     live.record = read_live_record(arguments.replay);
     live.record_name = arguments.replay;
   }
   return live;
-}
-
-/// A recording with its camera, the part of it to run on, and its true poses.
-struct Recording {
-  Sequence sequence;
-  FrameSelection selection;
-  std::optional<Trajectory> true_poses;
-  std::vector<std::string> warnings;  // of reading it
-};
-
-Recording open_recording(const RunArguments& arguments) {
-  Recording recording{
-      open_sequence(arguments.sequence), selected_frames(arguments), std::nullopt, {}};
-  Sequence& sequence = recording.sequence;
-  recording.warnings = sequence.remarks().warnings;
-  const SensorCamera sensor = sensor_camera(sequence, recording.selection, arguments.depth_factor);
-  sequence.use_camera(sensor.camera);
-  if (!sensor.depth_unit.empty()) recording.warnings.push_back(sensor.depth_unit);
-  GroundTruth groundtruth = read_groundtruth(arguments, sequence);
-  std::ranges::move(groundtruth.warnings, std::back_inserter(recording.warnings));
-  if (!groundtruth.poses.empty()) recording.true_poses = std::move(groundtruth.poses);
-  if (arguments.poses == "truth" && !recording.true_poses) {
-    throw Error("--poses truth: {} has no ground truth; name one with --groundtruth",
-                sequence.path().string());
-  }
-  return recording;
 }
 
 /// The folders that a run writes a file or more to for every frame.
@@ -225,65 +167,88 @@ class FrameFolders {
   std::optional<InpaintedFolder> inpainted_;
 };
 
+// The run; what was read is kept, if that is asked for, even where the run fails.
+SequenceRun run_and_keep(RunInput& input,
+                         const SystemConfig& config,
+                         RunOptions options,
+                         std::span<Observer* const> observers) {
+  try {
+    return run_sequence(input.frames(), config, std::move(options), observers);
+  } catch (const Error&) {
+    print_output(input.finish_recording());
+    throw;
+  }
+}
+
 int run(const RunArguments& arguments) {
-  SystemConfig config = make_config(arguments);
   if (arguments.localize_only && arguments.load.empty()) {
     throw Error(
         "--localize-only needs a map to find the camera in: name a map.stillmap with --load");
   }
-  const Recording recording = open_recording(arguments);
-  const Sequence& sequence = recording.sequence;
-  const std::optional<SequenceTruth> truth = read_sequence_truth(arguments.sequence.path);
-  SequenceStream all_frames(sequence, recording.selection);
-  InterruptibleStream frames(all_frames);
+  SteadyClock clock;
+  RunInput input(arguments, clock);
+  SystemConfig config = make_config(arguments, input.depth_noise());
   note_interruption();
   const ChosenSegmenter chosen =
-      choose_segmenter(arguments, sequence, frames.camera(), dynamics_mode(config.dynamics.mode));
+      choose_segmenter(arguments, input, dynamics_mode(config.dynamics.mode));
   RunOptions options;
   if (!arguments.load.empty()) options.start = read_session(arguments.load);
   options.localize_only = arguments.localize_only;
-  check_outputs(arguments, sequence);
+  check_outputs(arguments, input);
   const std::unique_ptr<RunFolder> out = prepare_out(arguments);
   options.segmenter = chosen.segmenter.get();
   options.threads = arguments.threads;
   options.live = live_options(arguments);
-  SteadyClock clock;
   if (options.live) options.live->clock = &clock;
-  if (truth || arguments.poses == "truth") options.groundtruth = recording.true_poses;
-  RunProgress progress(frames.size(), chosen.line);
-  std::vector<std::string> early = recording.warnings;
+  if (input.truth() || arguments.poses == "truth") options.groundtruth = input.true_poses();
+  RunProgress progress(input.frames().size(), chosen.line);
+  std::vector<std::string> early = input.warnings();
   for (const std::string& warning : early) progress.on_warning(warning);
   if (!chosen.warning.empty()) early.push_back(chosen.warning);
-  FrameFolders folders(arguments, frames.camera());
+  FrameFolders folders(arguments, input.frames().camera());
   SequenceRun run =
-      run_sequence(frames, config, std::move(options), folders.observers_with(progress));
+      run_and_keep(input, config, std::move(options), folders.observers_with(progress));
 
   RunReport& report = run.report;
   report.warnings.insert(report.warnings.begin(), early.begin(), early.end());
-  if (frames.ended_early()) {
-    report.warnings.push_back(frames.interruption());
-    progress.on_warning(frames.interruption());
+  const std::string interruption = input.interruption();
+  if (!interruption.empty()) {
+    report.warnings.push_back(interruption);
+    progress.on_warning(interruption);
   }
   report.version = kVersion;
-  report.sequence = sequence.name();
+  report.sequence = input.name();
   report.config_yaml = dump_yaml(list_fields(config));
-  report.groundtruth = recording.true_poses;
+  report.groundtruth = input.true_poses();
   evaluate(report);
   choose_map(run, arguments.poses == "truth");
-  if (truth) evaluate_maps(run, *truth);
+  if (input.truth()) evaluate_maps(run, *input.truth());
   const std::optional<std::string> live_lines =
-      arguments.live ? std::optional(live_jsonl(run.live_record)) : std::nullopt;
+      is_live(arguments) ? std::optional(live_jsonl(run.live_record)) : std::nullopt;
   run.session.config_yaml = report.config_yaml;
   // The map of a run that only localises is the one that it was given.
   const Session* const session = arguments.localize_only ? nullptr : &run.session;
+  const std::string recording = input.finish_recording();
   out->write(run.result, report, {run.objects_jsonl, live_lines}, session);
-  print_output(run_summary(report, input_line(sequence), chosen.line, arguments.out));
-  if (frames.ended_early()) return kInterrupted;
+  print_output(run_summary(report, input.line(), chosen.line, arguments.out) + recording);
+  if (!interruption.empty()) return kInterrupted;
   return run.result.lost_at_end ? kLostForGood : 0;
 }
 
 void add_inputs(CLI::App& command, RunArguments& arguments) {
-  add_sequence_options(command, arguments.sequence);
+  CLI::Option* const sequence = add_sequence_options(command, arguments.sequence);
+  sequence->required(false);
+  command
+      .add_option(
+          "--device",
+          arguments.device,
+          "a depth camera in place of SEQUENCE: openni2:0, the first that OpenNI2 finds, or "
+          "openni2:URI; the run is live and goes on until Ctrl-C")
+      ->excludes(sequence);
+  command.add_option("--save-recording",
+                     arguments.save_recording,
+                     "new folder for the frames of a live run, as a sequence: all that came, also "
+                     "those that were dropped");
   command.add_option(
       "--camera",
       arguments.sequence.camera,
@@ -367,6 +332,20 @@ void add_run_command(CLI::App& app, CommandResult& result) {
   const auto arguments = std::make_shared<RunArguments>();
   add_inputs(*command, *arguments);
   add_settings(*command, *arguments);
+  for (const char* of_recordings : {"--format",
+                                    "--rate",
+                                    "--stamps",
+                                    "--color-topic",
+                                    "--depth-topic",
+                                    "--depth-factor",
+                                    "--frames",
+                                    "--stride",
+                                    "--groundtruth",
+                                    "--speed",
+                                    "--replay",
+                                    "--poses"}) {
+    command->get_option("--device")->excludes(command->get_option(of_recordings));
+  }
   command->footer(
       "Examples:\n"
       "  stillmap run rgbd_dataset_freiburg1_xyz --out result\n"
@@ -375,8 +354,10 @@ void add_run_command(CLI::App& app, CommandResult& result) {
       "  stillmap run office --out result --segmenter detections:office/detections\n"
       "  stillmap run office --out live --live\n"
       "  stillmap run office --out again --live --replay live/live.jsonl\n"
+      "  stillmap run --device openni2:0 --out live --save-recording kept\n"
       "Exit code 3 says that tracking was lost for good, 4 that Ctrl-C or SIGTERM ended the run: "
-      "the\nresults are whole, but end before the sequence does. A second Ctrl-C ends at once.");
+      "the\nresults are whole, but end before the sequence does. A second Ctrl-C ends at once.\n"
+      "Of a run on a device Ctrl-C is the usual end.");
   command->callback([arguments, &result] { result.exit_code = run(*arguments); });
 }
 

@@ -34,6 +34,7 @@ struct SynthArguments {
   std::vector<std::string> without;
   std::string detections = "none";
   std::string assets = "auto";
+  double stereo_baseline_m = 0;
   std::size_t threads = std::max(1U, std::thread::hardware_concurrency());
 };
 
@@ -116,7 +117,9 @@ void render(const SynthArguments& arguments) {
   ProgressBar progress("frames");
   write_sequence(SyntheticSequence(options),
                  arguments.out,
-                 {.threads = arguments.threads, .detections = detections},
+                 {.threads = arguments.threads,
+                  .detections = detections,
+                  .stereo_baseline_m = arguments.stereo_baseline_m},
                  [&](std::size_t done, std::size_t total) { progress.show(done, total); });
   progress.finish();
   print_output(fmt::format(
@@ -152,6 +155,12 @@ void add_synth_command(CLI::App& app, CommandResult&) {
                    "also write detections/ from the truth: none, perfect, or imperfect, which "
                    "has the faults of a network")
       ->capture_default_str();
+  command
+      ->add_option("--stereo",
+                   arguments->stereo_baseline_m,
+                   "also write mav0/, stereo pairs in the layout of EuRoC: a second camera, this "
+                   "many metres to the right")
+      ->check(CLI::Range(0.001, 10.0));
   command
       ->add_option("--assets",
                    arguments->assets,

@@ -12,7 +12,7 @@ namespace stillmap {
 namespace {
 
 // Each pixel has its own random key: the order of evaluation does not matter.
-enum class Effect : std::uint64_t { kColor = 1, kDepth = 2, kEdge = 3, kDrift = 4 };
+enum class Effect : std::uint64_t { kColor = 1, kDepth = 2, kEdge = 3, kDrift = 4, kSecond = 5 };
 
 std::uint64_t effect_key(Effect effect, std::uint32_t seed, FrameId frame) {
   const std::uint64_t run = (std::uint64_t{seed} << 32U) | frame.value;
@@ -144,19 +144,29 @@ std::array<float, 3> exposure_gains(double share, std::uint32_t seed, FrameId fr
   return gains;
 }
 
+namespace {
+
+ColorImage measured_color(const ColorImage& perfect,
+                          const SensorOptions& options,
+                          Effect noise,
+                          std::uint32_t seed,
+                          FrameId frame) {
+  if (!options.exposure_drift && !options.color_noise) return perfect;
+  const Gains gains = options.exposure_drift ? exposure_gains(options.drift_share, seed, frame)
+                                             : Gains{1.F, 1.F, 1.F};
+  const float sigma = options.color_noise ? static_cast<float>(options.color_sigma) : 0.F;
+  return ColorImage(recorded_color(perfect.mat, gains, sigma, effect_key(noise, seed, frame)));
+}
+
+}  // namespace
+
 RgbdImage apply_sensor(const RenderedImage& perfect,
                        const CameraModel& camera,
                        const SensorOptions& options,
                        std::uint32_t seed,
                        FrameId frame) {
-  RgbdImage measured{perfect.color, perfect.depth};
-  if (options.exposure_drift || options.color_noise) {
-    const Gains gains = options.exposure_drift ? exposure_gains(options.drift_share, seed, frame)
-                                               : Gains{1.F, 1.F, 1.F};
-    const float sigma = options.color_noise ? static_cast<float>(options.color_sigma) : 0.F;
-    measured.color.mat =
-        recorded_color(perfect.color.mat, gains, sigma, effect_key(Effect::kColor, seed, frame));
-  }
+  RgbdImage measured{measured_color(perfect.color, options, Effect::kColor, seed, frame),
+                     perfect.depth};
   const DepthSensor sensor(options, camera);
   if (options.depth_holes) {
     measured.depth.mat =
@@ -167,6 +177,13 @@ RgbdImage apply_sensor(const RenderedImage& perfect,
         noisy_depth(measured.depth.mat, sensor, effect_key(Effect::kDepth, seed, frame));
   }
   return measured;
+}
+
+ColorImage apply_second_sensor(const ColorImage& perfect,
+                               const SensorOptions& options,
+                               std::uint32_t seed,
+                               FrameId frame) {
+  return measured_color(perfect, options, Effect::kSecond, seed, frame);
 }
 
 }  // namespace stillmap

@@ -60,4 +60,11 @@ struct RgbdImage {
                                      std::uint32_t seed,
                                      FrameId frame);
 
+/// The colour image of a second camera of this kind beside the first one: its gains are those of
+/// the first, its noise is its own.
+[[nodiscard]] ColorImage apply_second_sensor(const ColorImage& perfect,
+                                             const SensorOptions& options,
+                                             std::uint32_t seed,
+                                             FrameId frame);
+
 }  // namespace stillmap

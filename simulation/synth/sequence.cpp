@@ -116,6 +116,17 @@ SyntheticFrame SyntheticSequence::render(FrameId id) const {
   return {std::make_shared<const RgbdFrame>(std::move(frame)), perfect};
 }
 
+ColorImage SyntheticSequence::right_image(FrameId id, double baseline_m) const {
+  STILLMAP_CHECK(id.index() < size());
+  Exposure moved = exposure(id);
+  const Eigen::Translation3d to_the_right(baseline_m, 0, 0);
+  for (Eigen::Isometry3d* T :
+       {&moved.T_world_camera, &moved.T_world_camera_open, &moved.T_world_camera_close}) {
+    *T = *T * to_the_right;
+  }
+  return apply_second_sensor(renderer_.render(moved).color, options_.sensor, options_.seed, id);
+}
+
 Trajectory SyntheticSequence::ground_truth() const {
   Trajectory trajectory;
   trajectory.reserve(size());

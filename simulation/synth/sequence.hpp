@@ -64,6 +64,9 @@ class SyntheticSequence {
   [[nodiscard]] SyntheticFrame render(FrameId id) const;
   [[nodiscard]] FramePtr frame(FrameId id) const { return render(id).frame; }
 
+  /// The colour image of frame `id` from a second camera, `baseline_m` to the right of the first.
+  [[nodiscard]] ColorImage right_image(FrameId id, double baseline_m) const;
+
   /// The stamp of frame `id`, the middle of its exposure, with six decimals. The first is 1000 s.
   [[nodiscard]] Stamp stamp(FrameId id) const;
 

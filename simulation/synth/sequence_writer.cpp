@@ -11,6 +11,7 @@
 #include <fmt/core.h>
 
 #include "simulation/synth/detection_faults.hpp"
+#include "simulation/synth/stereo_folder.hpp"
 #include "simulation/synth/truth_maps.hpp"
 #include "stillmap/concurrency/parallel.hpp"
 #include "stillmap/core/error.hpp"
@@ -39,9 +40,10 @@ void check_vacant(const fs::path& folder) {
 }
 
 bool is_file_of_sequence(const fs::path& name) {
-  static constexpr std::array<std::string_view, 10> kNames = {"rgb",
+  static constexpr std::array<std::string_view, 11> kNames = {"rgb",
                                                               "depth",
                                                               "truth",
+                                                              "mav0",
                                                               "detections",
                                                               "assets.txt",
                                                               "camera.yaml",
@@ -99,12 +101,14 @@ std::vector<TruthObject> truth_objects(const SyntheticSequence& sequence,
 WrittenFrame write_frame(const SyntheticSequence& sequence,
                          const std::vector<TruthObject>& objects,
                          const FolderReplacement& result,
+                         const std::optional<StereoFolder>& stereo,
                          FrameId id) {
   const SyntheticFrame rendered = sequence.render(id);
   const RgbdFrame& frame = *rendered.frame;
   const std::string name = frame.stamp.text + ".png";
   result.write("rgb/" + name, encode_png(frame.color));
   result.write("depth/" + name, encode_depth_png(frame.depth, sequence.camera().depth_factor));
+  if (stereo) stereo->write_pair(frame);
   result.write("truth/masks/" + name, encode_mask_png(rendered.truth.ids));
 
   const ObjectMask ids(rendered.truth.ids);
@@ -190,11 +194,14 @@ void write_sequence(const SyntheticSequence& sequence,
   Lists lists;
   TruthFolder truth(sequence, moved);
   DetectionsMaker detections(sequence, result, options.detections);
+  std::optional<StereoFolder> stereo;
+  if (options.stereo_baseline_m > 0) stereo.emplace(sequence, result, options.stereo_baseline_m);
   produce_in_parallel(
       sequence.size(),
       options.threads,
       [&](std::size_t i) {
-        return write_frame(sequence, objects, result, FrameId(static_cast<std::uint32_t>(i)));
+        return write_frame(
+            sequence, objects, result, stereo, FrameId(static_cast<std::uint32_t>(i)));
       },
       [&](std::size_t i, const WrittenFrame& frame) {
         truth.add(frame, sequence.pose(frame.truth.frame));
@@ -203,6 +210,7 @@ void write_sequence(const SyntheticSequence& sequence,
         if (on_progress) on_progress(i + 1, sequence.size());
       });
   detections.finish();
+  if (stereo) stereo->write_lists();
   truth.write(result, sequence.camera(), objects);
   if (sequence.options().assets) {
     result.write("assets.txt", sequence.options().assets->credits);

@@ -55,6 +55,13 @@ CameraModel find_camera(const fs::path& path,
                         const std::string& name,
                         const std::optional<CameraModel>& chosen,
                         const SequenceContent& content) {
+  if (content.depth_noise && chosen) {
+    throw Error(
+        "{}: stereo pairs have a camera of their own, that of their calibration; leave out "
+        "--camera",
+        path.string());
+  }
+  if (content.depth_noise) return content.camera.value();
   if (chosen) {
     check_camera(*chosen, "camera '" + chosen->name + "'");
     return *chosen;

@@ -39,8 +39,8 @@ class Sequence {
   /// Reads what the recording says of itself, and decodes no image. The camera is that of the
   /// options, else the folder's camera.yaml, else the one that the format tells, else the one that
   /// a word of the folder's name tells (freiburg1, fr1, freiburg2, fr2, freiburg3, fr3, bonn), else
-  /// that in truth/objects.json. Throws Error as choose_format() and the format's reader do;
-  /// UnknownCamera when the camera is not known.
+  /// that in truth/objects.json; of stereo pairs, the one of their calibration alone. Throws Error
+  /// as choose_format() and the format's reader do; UnknownCamera when the camera is not known.
   [[nodiscard]] static Sequence open(const std::filesystem::path& path,
                                      const SequenceOptions& options = {});
 
@@ -50,6 +50,10 @@ class Sequence {
   /// The name of its format.
   [[nodiscard]] std::string_view format() const { return format_; }
   [[nodiscard]] const CameraModel& camera() const { return reader_.camera(); }
+  /// The noise of its depth where that is made from stereo pairs; nothing for a depth camera.
+  [[nodiscard]] const std::optional<DepthNoise>& depth_noise() const {
+    return content_.depth_noise;
+  }
   /// Frames are those of another camera from now on.
   void use_camera(const CameraModel& camera) { reader_ = FrameReader(camera); }
 

@@ -47,6 +47,12 @@ struct GroundTruth {
   std::vector<std::string> warnings;
 };
 
+/// How exact the depth of a recording is, where it is not that of a depth camera.
+struct DepthNoise {
+  double inverse_depth_sigma = 0;  ///< standard deviation of the inverse depth, 1/m
+  double max_depth_m = 0;          ///< greatest depth
+};
+
 /// What is said of how a recording was read; a line each.
 struct Remarks {
   std::vector<std::string> notes;     ///< how it was understood
@@ -65,6 +71,7 @@ struct SequenceContent {
   std::shared_ptr<const ImageReader> images;
   std::optional<CameraModel> camera;         ///< as the recording tells it
   std::string no_camera;                     ///< why it does not, where there is more to say
+  std::optional<DepthNoise> depth_noise;     ///< of depth made from stereo pairs with `camera`
   std::function<GroundTruth()> groundtruth;  ///< reads it; empty where the recording has none
   Remarks remarks;
 };

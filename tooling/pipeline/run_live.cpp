@@ -14,6 +14,7 @@
 #include "stillmap/core/stopwatch.hpp"
 #include "stillmap/perception/motion/modes.hpp"
 #include "stillmap/perception/objects/object_tracker.hpp"
+#include "stillmap/sensor/arriving_stream.hpp"
 #include "stillmap/sensor/clocked_stream.hpp"
 #include "tooling/pipeline/look_policy.hpp"
 #include "tooling/pipeline/object_feed.hpp"
@@ -102,11 +103,9 @@ double LiveLoop::process(const FramePtr& frame) {
   return prepared_ms + result.pose_ms;
 }
 
-void run_by_clock(const LiveInput& input, LiveLoop& loop, RunLog& log, LiveReport& report) {
-  const LiveOptions& live = *input.options.live;
-  STILLMAP_CHECK(live.clock != nullptr);
-  report.speed = live.speed;
-  ClockedStream camera(input.stream, live.speed, *live.clock, input.options.probe);
+// `camera`: an ArrivingStream or a ClockedStream.
+template <class Camera>
+void take_frames(Camera& camera, Clock& clock, LiveLoop& loop, RunLog& log, LiveReport& report) {
   while (const std::optional<StreamedFrame> next = camera.next()) {
     if (camera.dropped() > report.dropped) {
       log.observers().on_dropped(camera.dropped() - report.dropped);
@@ -116,9 +115,21 @@ void run_by_clock(const LiveInput& input, LiveLoop& loop, RunLog& log, LiveRepor
       log.skip(*damaged);
       continue;
     }
-    const double waited_ms = 1000 * (live.clock->now_s() - camera.arrival_s());
+    const double waited_ms = 1000 * (clock.now_s() - camera.arrival_s());
     report.latency_ms.push_back(waited_ms + loop.process(std::get<FramePtr>(*next)));
   }
+}
+
+void run_by_clock(const LiveInput& input, LiveLoop& loop, RunLog& log, LiveReport& report) {
+  const LiveOptions& live = *input.options.live;
+  STILLMAP_CHECK(live.clock != nullptr);
+  report.speed = live.speed;
+  if (live.arriving) {
+    ArrivingStream camera(input.stream, *live.clock, input.options.probe);
+    return take_frames(camera, *live.clock, loop, log, report);
+  }
+  ClockedStream camera(input.stream, live.speed, *live.clock, input.options.probe);
+  take_frames(camera, *live.clock, loop, log, report);
   if (camera.skipped_s() > 0) {
     log.observers().on_warning(
         fmt::format("of pauses of more than a minute between frames, {:.0f} s in all were not "

@@ -22,7 +22,8 @@ namespace stillmap {
 
 /// A run as with a camera: no frame waits for later ones, or for the network.
 struct LiveOptions {
-  double speed = 1;                        ///< of the clock by which frames come
+  bool arriving = false;  ///< the stream waits for its frames itself, as that of a device does
+  double speed = 1;       ///< of the clock by which the frames of another stream come
   std::optional<LiveRecord> record;        ///< its decisions replace those of the clock
   std::string record_name = "the record";  ///< its file, for messages
   Clock* clock = nullptr;                  ///< not owned; needed without a record

@@ -7,8 +7,8 @@
 
 namespace stillmap {
 
-/// The formats of recordings in one file, then folder_formats(). Formats whose library this build
-/// lacks are recognised too; opening them says so.
+/// The formats of recordings in one file, then folder_formats(), then those of stereo pairs.
+/// Formats whose library this build lacks are recognised too; opening them says so.
 [[nodiscard]] std::span<const SequenceFormat> recording_formats();
 
 }  // namespace stillmap

@@ -1,0 +1,15 @@
+# SPDX-License-Identifier: Apache-2.0
+# The target stillmap_openni, where Debian's libopenni2-dev is installed.
+find_path(STILLMAP_OPENNI_INCLUDE OpenNI.h PATH_SUFFIXES openni2)
+find_library(STILLMAP_OPENNI_LIBRARY OpenNI2)
+mark_as_advanced(STILLMAP_OPENNI_INCLUDE STILLMAP_OPENNI_LIBRARY)
+if(STILLMAP_OPENNI_INCLUDE AND STILLMAP_OPENNI_LIBRARY)
+  set(STILLMAP_OPENNI_FOUND TRUE)
+  add_library(stillmap_openni INTERFACE)
+  target_include_directories(stillmap_openni SYSTEM INTERFACE ${STILLMAP_OPENNI_INCLUDE})
+  target_link_libraries(stillmap_openni INTERFACE ${STILLMAP_OPENNI_LIBRARY})
+  message(STATUS "OpenNI2: ${STILLMAP_OPENNI_LIBRARY}")
+else()
+  set(STILLMAP_OPENNI_FOUND FALSE)
+  message(STATUS "OpenNI2: no libopenni2-dev, built without it")
+endif()
