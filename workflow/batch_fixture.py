@@ -34,12 +34,12 @@ class BatchTest(unittest.TestCase):
         cls.table = cls.folder / "table.csv"
         cls.table.write_text(TABLE)
 
-    def command(self, out, *arguments):
-        return [str(BATCH), str(self.table), str(self.folder / out), *arguments, "--quiet", "rules"]
+    def command(self, out, *arguments, table="table.csv"):
+        return [str(BATCH), str(self.folder / table), str(self.folder / out), *arguments]
 
-    def batch(self, out, *arguments, environment=None):
-        environment = {**(environment or os.environ), "STILLMAP": PROGRAM, "STILLMAP_MODELS": "none"}
-        return subprocess.run(self.command(out, *arguments), env=environment, capture_output=True, text=True)
+    def batch(self, out, *arguments, table="table.csv", environment=None):
+        environment = {**(environment or os.environ), "STILLMAP": PROGRAM}
+        return subprocess.run(self.command(out, *arguments, table=table), env=environment, capture_output=True, text=True)
 
     def content(self, out, name):
         return (self.folder / out / name).read_bytes()

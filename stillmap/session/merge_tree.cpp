@@ -74,8 +74,7 @@ class Tree {
   std::vector<Part> taken_in(const std::vector<Part>& parts, Part more) {
     std::vector<Part> all;
     for (const Part& part : parts) {
-      std::optional<Part> both =
-          part.rank < more.rank ? joined(part, more) : joined(more, part);
+      std::optional<Part> both = part.rank < more.rank ? joined(part, more) : joined(more, part);
       if (both) {
         more = std::move(*both);
       } else {
