@@ -13,10 +13,10 @@ class Cost:
     mb_a_frame: float
 
 
-# Measured at 640x480 (docs/cluster.md has how). A merge has the frames of all its sessions.
+# Measured at 640x480, rounded up (docs/cluster.md). A merge has the frames of all its sessions.
 MEASURED = {
     "segment": Cost(seconds=1, seconds_a_frame=0.1, mb=300, mb_a_frame=0),
-    "run": Cost(seconds=1, seconds_a_frame=0.06, mb=150, mb_a_frame=0.2),
+    "run": Cost(seconds=1, seconds_a_frame=0.08, mb=150, mb_a_frame=0.2),
     "merge": Cost(seconds=2, seconds_a_frame=0.03, mb=100, mb_a_frame=0.8),
 }
 START_S = 60  # Python and Snakemake on a node, a cold file system

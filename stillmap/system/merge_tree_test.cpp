@@ -63,7 +63,8 @@ class VisitsOfAnOffice : public testing::Test {
 };
 
 TEST_F(VisitsOfAnOffice, MakeOneMapInAnyOrderAndWhatIsElsewhereStaysApart) {
-  // The first and the third have only the second in common; nobody else was at the last one's place.
+  // The first and the third have only the second in common; nobody else was at the last one's
+  // place.
   const fs::path a = visit(0, 80), b = visit(50, 130), c = visit(100, 180), d = visit(330, 390);
   const std::vector<MergedPart> parts = merged({a, b, c, d}, "in_time");
   ASSERT_EQ(parts.size(), 2U);
