@@ -46,7 +46,7 @@ def why_not():
     return "Slurm's daemons need root" if os.geteuid() != 0 else None
 
 
-def wait_until(condition, what, seconds=30):
+def wait_until(condition, what, seconds=60):
     """The first value of `condition` that is true."""
     end = time.monotonic() + seconds
     while time.monotonic() < end:

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdlib>
@@ -83,7 +84,7 @@ std::string line_of(const MergedPart& part, const std::string& place) {
                      place);
 }
 
-// Names the sessions that are in no part of their own, because only the largest is written.
+// Of a map that is not the largest.
 std::string line_of_unwritten(const MergedPart& part) {
   if (part.sessions.size() == 1) return line_of(part, "");
   std::string text = "apart      ";
@@ -92,7 +93,9 @@ std::string line_of_unwritten(const MergedPart& part) {
 }
 
 void write_largest(const std::vector<MergedPart>& parts, const MergeArguments& arguments) {
-  if (parts.front().sessions.size() == 1) {
+  const auto largest =
+      std::ranges::find_if(parts, [](const MergedPart& part) { return part.sessions.size() > 1; });
+  if (largest == parts.end()) {
     throw Error(
         "{} and {}: no place of one is recognised in the other; nothing was written. Sessions of "
         "one room need views of the same things from about the same side",
@@ -101,11 +104,13 @@ void write_largest(const std::vector<MergedPart>& parts, const MergeArguments& a
                                        : counted(arguments.sessions.size() - 1, "more session"));
   }
   AtomicFile file(arguments.out);
-  copy_bytes(parts.front().file, [&](std::string_view bytes) { file.write(bytes); });
+  copy_bytes(largest->file, [&](std::string_view bytes) { file.write(bytes); });
   file.close();
   file.take_place();
-  std::string text = line_of(parts.front(), arguments.out);
-  for (std::size_t i = 1; i < parts.size(); ++i) text += line_of_unwritten(parts[i]);
+  std::string text = line_of(*largest, arguments.out);
+  for (auto part = parts.begin(); part != parts.end(); ++part) {
+    if (part != largest) text += line_of_unwritten(*part);
+  }
   print_output(text);
 }
 
