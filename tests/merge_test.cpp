@@ -23,6 +23,7 @@ class Merge : public Cli {
   // A session of one frame, in which nothing was seen.
   void save(const std::string& name, double stamp_s, const std::string& camera = "tum_fr1") const {
     Session session;
+    session.map = Map({1});
     SystemConfig config;
     session.config_yaml = dump_yaml(list_fields(config));
     session.camera = builtin_camera(camera);
