@@ -170,7 +170,7 @@ void add_merge_command(CLI::App& app, CommandResult& /*result*/) {
                    "two or more map.stillmap of one camera, in any order; the coordinates of the "
                    "earliest are kept")
       ->required()
-      ->expected(2, 1 << 20);
+      ->expected(-2);  // 2 or more
   command->add_option("--out", arguments->out, "file for the largest map that they make");
   command->add_option("--parts",
                       arguments->parts,
