@@ -3,12 +3,12 @@
 // says why, where there is no browser.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { mkdirSync, openSync, readSync, rmSync } from "node:fs";
+import { existsSync, mkdirSync, openSync, readSync, rmSync } from "node:fs";
 import path from "node:path";
 import { browserLacks, launchBrowser, startView } from "./support/browser.mjs";
 
 const [program, folder] = process.argv.slice(2);
-const FRAMES = 45;
+const FRAMES = 40;
 
 if (browserLacks()) {
   console.log(`skipped: no ${browserLacks()} (tools/setup --browser installs it)`);
@@ -51,7 +51,7 @@ function gatherErrors(page) {
 }
 
 async function seesARunGoOn(page, sequence, out) {
-  const run = await startView(program, ["run", sequence, "--out", out, "--live", "--speed", "0.15", "--view",
+  const run = await startView(program, ["run", sequence, "--out", out, "--live", "--speed", "0.08", "--view",
     "--view-address", "127.0.0.1:0/a-token-of-the-test", "--segmenter", `detections:${sequence}/detections`]);
   const before = Date.now();
   await page.goto(run.url);
@@ -62,6 +62,7 @@ async function seesARunGoOn(page, sequence, out) {
   await untilOnPage(page, () => /person \d+/.test(document.getElementById("objects").textContent));
   assert.doesNotMatch(await page.textContent("#status"), /finished/, "all of it was seen after the run had ended");
   await untilOnPage(page, () => document.getElementById("status").textContent.startsWith("finished"));
+  while (!existsSync(path.join(out, "map.ply")) && run.child.exitCode === null) await page.waitForTimeout(50);
   return run;
 }
 

@@ -35,6 +35,12 @@ tcp::acceptor listening(asio::io_context& context, const ViewAddress& address) {
   }
 }
 
+std::string url_of(const tcp::endpoint& place, const std::string& token) {
+  const std::string host = place.address().to_string();
+  return fmt::format(
+      "http://{}:{}/{}/", place.address().is_v6() ? '[' + host + ']' : host, place.port(), token);
+}
+
 }  // namespace
 
 ViewServing::ViewServing(const ViewAddress& address, ViewStart start)
@@ -43,6 +49,7 @@ ViewServing::ViewServing(const ViewAddress& address, ViewStart start)
       farewell_(context_),
       pause_(context_),
       token_(address.token.empty() ? random_token() : address.token),
+      url_(url_of(acceptor_.local_endpoint(), token_)),
       state_(std::move(start)) {
   accept();
   thread_ = std::thread([this] { serve(); });
@@ -51,13 +58,6 @@ ViewServing::ViewServing(const ViewAddress& address, ViewStart start)
 ViewServing::~ViewServing() {
   context_.stop();
   thread_.join();
-}
-
-std::string ViewServing::url() const {
-  const tcp::endpoint place = acceptor_.local_endpoint();
-  const std::string host = place.address().to_string();
-  return fmt::format(
-      "http://{}:{}/{}/", place.address().is_v6() ? '[' + host + ']' : host, place.port(), token_);
 }
 
 void ViewServing::wake() {

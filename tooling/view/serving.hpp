@@ -34,7 +34,7 @@ class ViewServing {
   // For any thread but that of the server:
   void wake();
   void wait_until_alone();
-  [[nodiscard]] std::string url() const;
+  [[nodiscard]] const std::string& url() const { return url_; }
 
   // For connections and pages:
   /// What follows the token in a path; nothing for a path with another token or none.
@@ -56,6 +56,7 @@ class ViewServing {
   boost::asio::ip::tcp::acceptor acceptor_;
   boost::asio::steady_timer farewell_, pause_;
   const std::string token_;
+  const std::string url_;
   ViewState state_;
   std::set<std::shared_ptr<OpenPage>> pages_;
   std::shared_ptr<const char> ticket_ = std::make_shared<const char>();

@@ -44,6 +44,7 @@ function showFrame(place) {
   element("scrubber").value = String(place);
   element("frame-number").textContent =
     `${frame.n}${start.frames ? ` / ${start.frames}` : ""}  ${(frame.t - records.frames[0].t).toFixed(1)} s`;
+  element("image").hidden = records.pictures.size === 0;
   const picture = records.pictureAt(frame), known = records.objectsAt(place);
   // The picture may be of a frame shortly before.
   const ofPicture = picture && records.frameNumbered(picture.n);
@@ -74,7 +75,6 @@ function begin(message) {
   records.clear();
   scene.clear();
   scene.camera.setCamera(start.camera, element("picture"));
-  element("picture").hidden = !start.camera;
   element("title").textContent = start.title;
   document.title = `${start.title} - stillmap`;
   fillLegend(element("legend"), start);

@@ -42,8 +42,10 @@ export class Panel {
   show(frames, state, pointCount) {
     const recent = frames.slice(-SHOWN_FRAMES), now = frames[frames.length - 1];
     const times = recent.map((frame) => frame.ms);
-    this.setFigure("ms per frame", median(times).toFixed(1));
-    this.setFigure("features", String(now.f));
+    const isTimed = times.some((ms) => ms > 0);  // a finished run's folder has no times of frames
+    this.setFigure("ms per frame", isTimed ? median(times).toFixed(1) : "-");
+    this.setFigure("features", isTimed ? String(now.f) : "-");
+    element("times").hidden = !isTimed;
     this.setFigure("key frames", String(state.keyframes ? state.keyframes.length
                                         : frames.reduce((sum, frame) => sum + (frame.k || 0), 0)));
     this.setFigure("dropped", String(state.dropped || 0));
