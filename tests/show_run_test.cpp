@@ -28,7 +28,8 @@ TEST_F(ShowRun, AViewChangesNoBitAndKeepsNoProgram) {
   EXPECT_THAT(outcome.out,
               testing::MatchesRegex("view        http://127\\.0\\.0\\.1:[0-9]+/[0-9a-f]{32}/\n.*"));
   for (const char* file : {"trajectory.txt", "keyframes.txt", "map.ply", "map.stillmap"}) {
-    EXPECT_EQ(content(std::string("plain/") + file), content(std::string("viewed/") + file)) << file;
+    EXPECT_EQ(content(std::string("plain/") + file), content(std::string("viewed/") + file))
+        << file;
   }
 }
 

@@ -36,6 +36,8 @@ class PointChunks {
   static constexpr std::size_t kMostPoints = 20'000'000;
 
  private:
+  std::size_t place_of(const std::array<int, 3>& cell);
+
   std::vector<PointChunk> chunks_;
   std::map<std::array<int, 3>, std::size_t> places_;  // in chunks_
   std::size_t points_ = 0;

@@ -21,7 +21,8 @@ using Json = nlohmann::ordered_json;
 constexpr int kPictureWidth_px = 320;
 constexpr int kMaskWidth_px = 160;
 constexpr int kGhostPixels = 160;
-constexpr std::size_t kLevelPoints = 20'000;
+// scene_frame() tries some 2000 directions with every point.
+constexpr std::size_t kLevelPoints = 500, kFinalLevelPoints = 4000;
 
 std::string dumped(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -114,12 +115,13 @@ void ViewState::grow(const ViewedSample& sample) {
   const PointCloud added = growing_->add(sample);
   map_.add(added);
   grown_from_.push_back({sample.second.stamp, sample.second.T_world_camera});
-  const PointCloud some = spread(added, kLevelPoints / 10);
+  const PointCloud some = spread(added, kLevelPoints / 5);
   growth_.positions.insert(growth_.positions.end(), some.positions.begin(), some.positions.end());
   growth_.colors.insert(growth_.colors.end(), some.colors.begin(), some.colors.end());
-  // From the first view, and again when there is much more to go by.
+  // From the first view, and again when there are four times as many to go by.
   const std::size_t views = grown_from_.size();
-  if (std::has_single_bit(views)) find_level(spread(growth_, kLevelPoints), grown_from_);
+  if (std::has_single_bit(views) && std::countr_zero(views) % 2 == 0)
+    find_level(spread(growth_, kLevelPoints), grown_from_);
 }
 
 void ViewState::find_level(const PointCloud& cloud, const Trajectory& cameras) {
@@ -154,7 +156,7 @@ void ViewState::finish(ViewedEnd end) {
   keyframes_ = std::move(end.keyframes);
   finished_ = true;
   ++state_version_;
-  find_level(spread(end.map, 10 * kLevelPoints), end.trajectory);
+  find_level(spread(end.map, kFinalLevelPoints), end.trajectory);
 }
 
 std::string ViewState::next_message(PageProgress& progress) const {

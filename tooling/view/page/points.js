@@ -87,20 +87,19 @@ export class MapPoints {
     }
   }
 
-  // Chooses about `most` points for a camera at that place (world coordinates). Returns their number.
+  // Chooses about `most` points for a camera at that place (world coordinates): all, if they are no
+  // more, else fewer of what is far.
   choose(eye, most) {
+    if (this.size <= most) {
+      for (const chunk of this.chunks) chunk.draw(chunk.size);
+      return;
+    }
     const wanted = this.chunks.map((chunk) => {
       const distance = Math.max(NEAR_M, eye.distanceTo(chunk.middle) - chunk.side);
       return chunk.size * Math.max(LEAST_SHARE, (NEAR_M / distance) ** 2);
     });
     const sum = wanted.reduce((a, b) => a + b, 0);
     const share = Math.min(1, most / Math.max(1, sum));
-    let drawn = 0;
-    this.chunks.forEach((chunk, i) => {
-      const count = Math.ceil(wanted[i] * share);
-      chunk.draw(count);
-      drawn += count;
-    });
-    return drawn;
+    this.chunks.forEach((chunk, i) => chunk.draw(Math.ceil(wanted[i] * share)));
   }
 }

@@ -132,7 +132,7 @@ export class Scene {
   draw(most) {
     const eye = this.eye.position.clone();
     const toWorld = new THREE.Matrix4().getInverse(this.world.matrix);
-    this.drawnPoints = this.points.choose(eye.applyMatrix4(toWorld), most);
+    this.points.choose(eye.applyMatrix4(toWorld), most);
     this.path.object.visible = this.isShown("path");
     this.keyframes.object.visible = this.isShown("keyframes");
     this.objects.setVisible(this.isShown("objects"));
