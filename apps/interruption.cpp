@@ -38,6 +38,15 @@ void note_interruption() {
   handle(SIGTERM);
 }
 
+void note_no_interruption() {
+  for (const int signal_number : {SIGINT, SIGTERM}) {
+    struct sigaction present = {};
+    if (sigaction(signal_number, nullptr, &present) == 0 && present.sa_handler == on_signal) {
+      std::signal(signal_number, SIG_DFL);  // NOLINT(cert-err33-c): it cannot fail here
+    }
+  }
+}
+
 bool interruption_noted() {
   return interruption;
 }

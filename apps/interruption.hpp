@@ -7,6 +7,9 @@ namespace stillmap {
 /// once, as it would without this call.
 void note_interruption();
 
+/// From now on a signal ends the program at once.
+void note_no_interruption();
+
 /// Whether a signal has come since note_interruption().
 [[nodiscard]] bool interruption_noted();
 

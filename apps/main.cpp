@@ -35,6 +35,7 @@ constexpr const char* kExamples =
     "  stillmap run office --out result            trajectory, map and report of a sequence\n"
     "  stillmap run office --out result --set tracking.features=2000\n"
     "  stillmap evaluate trajectory office/groundtruth.txt result/trajectory.txt\n"
+    "  stillmap show result                        its map, camera and objects in a browser\n"
     "  stillmap export result --octomap map.bt     its map for other programs\n"
     "  stillmap view result/map.ply --out map.png  the map from the front, the left and above\n"
     "  stillmap config                             the common settings, their defaults and "
@@ -61,6 +62,7 @@ const std::vector<AddCommand> kCommands = {add_run_command,
                                            add_evaluate_command,
                                            add_export_command,
                                            add_merge_command,
+                                           add_show_command,
                                            add_view_command,
                                            add_models_command,
                                            add_config_command};

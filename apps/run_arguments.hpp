@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/sequence_option.hpp"
+#include "apps/viewer_option.hpp"
 
 namespace stillmap {
 
@@ -33,6 +34,7 @@ struct RunArguments {
   std::string poses = "estimated";
   std::string objects_out;
   std::string inpainted;
+  ViewerArguments viewer;
 };
 
 }  // namespace stillmap

@@ -22,6 +22,7 @@
 #include "apps/sequence_option.hpp"
 #include "apps/steady_clock.hpp"
 #include "apps/version.hpp"
+#include "apps/viewer_option.hpp"
 #include "stillmap/config/config_io.hpp"
 #include "stillmap/core/error.hpp"
 #include "stillmap/core/joined.hpp"
@@ -155,8 +156,7 @@ class FrameFolders {
     if (!arguments.inpainted.empty()) inpainted_.emplace(arguments.inpainted, camera);
   }
 
-  [[nodiscard]] std::vector<Observer*> observers_with(Observer& other) {
-    std::vector<Observer*> observers = {&other};
+  [[nodiscard]] std::vector<Observer*> observers_with(std::vector<Observer*> observers) {
     if (objects_) observers.push_back(&*objects_);
     if (inpainted_) observers.push_back(&*inpainted_);
     return observers;
@@ -206,8 +206,10 @@ int run(const RunArguments& arguments) {
   for (const std::string& warning : early) progress.on_warning(warning);
   if (!chosen.warning.empty()) early.push_back(chosen.warning);
   FrameFolders folders(arguments, input.frames().camera());
-  SequenceRun run =
-      run_and_keep(input, config, std::move(options), folders.observers_with(progress));
+  RunViewer viewer(arguments.viewer,
+                   {input.name(), input.frames().size(), input.frames().camera()});
+  SequenceRun run = run_and_keep(
+      input, config, std::move(options), folders.observers_with({&progress, viewer.observer()}));
 
   RunReport& report = run.report;
   report.warnings.insert(report.warnings.begin(), early.begin(), early.end());
@@ -232,6 +234,7 @@ int run(const RunArguments& arguments) {
   out->write(run.result, report, {run.objects_jsonl, live_lines}, session);
   print_output(run_summary(report, input.line(), chosen.line, arguments.out) + recording);
   if (!interruption.empty()) return kInterrupted;
+  viewer.stay();
   return run.result.lost_at_end ? kLostForGood : 0;
 }
 
@@ -320,6 +323,7 @@ void add_settings(CLI::App& command, RunArguments& arguments) {
                   "has them; the trajectory is the estimate in any case")
       ->check(CLI::IsMember({"estimated", "truth"}))
       ->capture_default_str();
+  add_view_options(command, arguments.viewer);
   command.add_option("--threads", arguments.threads, "1 or more; the result is the same")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();

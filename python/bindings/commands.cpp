@@ -117,6 +117,8 @@ void ProgressBar::finish() {
 // Python has handlers of its own: ProgressBar::show() asks them.
 void note_interruption() {}
 
+void note_no_interruption() {}
+
 bool interruption_noted() {
   return false;
 }

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-# cmake -DOUTPUT=x.cpp "-DINPUTS=a.css;b.js" -P embed_text.cmake
-# Writes a C++ file with a function for each text file, page_css() for page.css, that returns its text.
-set(code "// Made by embed_text.cmake from the files beside it.\n#include \"tooling/report/page_assets.hpp\"\n\nnamespace stillmap {\n")
+# cmake -DOUTPUT=x.cpp -DHEADER=tooling/x.hpp "-DINPUTS=a.css;b.js" -P embed_text.cmake
+# Writes a C++ file with a function for each text file, page_css() for page.css, that returns its text. HEADER declares them.
+set(code "// Made by embed_text.cmake.\n#include \"${HEADER}\"\n\nnamespace stillmap {\n")
 foreach(input IN LISTS INPUTS)
   get_filename_component(name "${input}" NAME)
   string(REPLACE "." "_" function "${name}")

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+// The view in a real browser: `node view_browser_test.mjs PROGRAM FOLDER`. Exits with 77, which
+// says why, where there is no browser.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { existsSync, mkdirSync, openSync, readSync, rmSync } from "node:fs";
+import path from "node:path";
+import { browserLacks, launchBrowser, startView } from "./support/browser.mjs";
+
+const [program, folder] = process.argv.slice(2);
+const FRAMES = 40;
+
+if (browserLacks()) {
+  console.log(`skipped: no ${browserLacks()} (tools/setup --browser installs it)`);
+  process.exit(77);
+}
+
+// How many points a PLY has, by its header.
+function pointsIn(file) {
+  const head = Buffer.alloc(1000);
+  readSync(openSync(file), head, 0, head.length, 0);
+  return Number(/element vertex (\d+)/.exec(head.toString("latin1"))[1]);
+}
+
+const pointsOn = (page) => page.evaluate(() => Number(document.getElementById("scene").dataset.points || 0));
+const untilOnPage = (page, condition, value) => page.waitForFunction(condition, value, { timeout: 30000 });
+
+// What a picture of the page holds: the share of pixels unlike the first one, and the number of colours.
+async function contentOf(page, selector) {
+  const png = await page.locator(selector).screenshot();
+  return page.evaluate(async (base64) => {
+    const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
+    const image = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
+    const canvas = new OffscreenCanvas(image.width, image.height), context = canvas.getContext("2d");
+    context.drawImage(image, 0, 0);
+    const pixels = new Uint32Array(context.getImageData(0, 0, image.width, image.height).data.buffer);
+    return { share: pixels.filter((pixel) => pixel !== pixels[0]).length / pixels.length,
+             colors: new Set(pixels).size };
+  }, png.toString("base64"));
+}
+
+function gatherErrors(page) {
+  const errors = [];
+  page.on("pageerror", (error) => errors.push(error.message));
+  page.on("console", (message) => {
+    // Chromium itself says that a server is gone, which here it is for a while.
+    const serverIsGone = /WebSocket connection .* failed/.test(message.text());
+    if (message.type() === "error" && !serverIsGone) errors.push(message.text());
+  });
+  return errors;
+}
+
+async function seesARunGoOn(page, sequence, out) {
+  const run = await startView(program, ["run", sequence, "--out", out, "--live", "--speed", "0.08", "--view",
+    "--view-address", "127.0.0.1:0/a-token-of-the-test", "--segmenter", `detections:${sequence}/detections`]);
+  const before = Date.now();
+  await page.goto(run.url);
+  await untilOnPage(page, () => document.getElementById("scene").dataset.points > 0);
+  console.log(`first points after ${Date.now() - before} ms`);
+  const first = await pointsOn(page);
+  await untilOnPage(page, (least) => document.getElementById("scene").dataset.points > least, first);
+  await untilOnPage(page, () => /person \d+/.test(document.getElementById("objects").textContent));
+  assert.doesNotMatch(await page.textContent("#status"), /finished/, "all of it was seen after the run had ended");
+  await untilOnPage(page, () => document.getElementById("status").textContent.startsWith("finished"));
+  while (!existsSync(path.join(out, "map.ply")) && run.child.exitCode === null) await page.waitForTimeout(50);
+  return run;
+}
+
+async function showsAllOfIt(page, out) {
+  const points = pointsIn(path.join(out, "map.ply"));
+  await untilOnPage(page, (all) => document.getElementById("scene").dataset.points == all, points);
+  await page.waitForTimeout(700);  // the scene rests, and is drawn with all points
+  const scene = await contentOf(page, "#scene");
+  assert.ok(scene.share > 0.1 && scene.colors > 500, `the scene is empty: ${JSON.stringify(scene)}`);
+}
+
+async function scrubs(page) {
+  await page.locator("#scrubber").fill("5");
+  assert.match(await page.textContent("#frame-number"), /^\d+ /);
+  assert.equal(await page.getAttribute("#newest", "aria-pressed"), "false");
+  await page.click("#newest");
+  assert.equal(await page.inputValue("#scrubber"), await page.getAttribute("#scrubber", "max"));
+}
+
+async function connectsAgain(page, run, out) {
+  run.child.kill("SIGINT");
+  await run.ended;
+  const address = new URL(run.url);
+  const show = await startView(program, ["show", out, "--view-address", address.host + address.pathname.slice(0, -1)]);
+  assert.equal(show.url, run.url);
+  await untilOnPage(page, (title) => document.getElementById("title").textContent === title, out);
+  await showsAllOfIt(page, out);
+  return show;
+}
+
+async function fitsAPhone(browser, url) {
+  const context = await browser.newContext({ viewport: { width: 390, height: 844 }, isMobile: true, hasTouch: true });
+  const page = await context.newPage(), errors = gatherErrors(page);
+  await page.goto(url);
+  await untilOnPage(page, () => document.getElementById("scene").dataset.points > 0);
+  await page.tap("#above");
+  assert.equal(await page.getAttribute("#follow", "aria-pressed"), "false");
+  assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), "wider than the screen");
+  await page.touchscreen.tap(195, 200);
+  assert.deepEqual(errors, []);
+  await context.close();
+}
+
+rmSync(folder, { recursive: true, force: true });
+mkdirSync(folder, { recursive: true });
+const sequence = path.join(folder, "office"), out = path.join(folder, "out");
+execFileSync(program, ["synth", sequence, "--scene", "walking_xyz", "--frames", String(FRAMES), "--size", "320x240",
+                       "--detections", "imperfect"], { stdio: "ignore" });
+const browser = await launchBrowser();
+let running = null;
+try {
+  const page = await browser.newPage({ viewport: { width: 1000, height: 700 } });
+  const errors = gatherErrors(page);
+  running = await seesARunGoOn(page, sequence, out);
+  await showsAllOfIt(page, out);
+  const picture = await contentOf(page, "#picture");
+  assert.ok(picture.share > 0.5 && picture.colors > 500, `the image is empty: ${JSON.stringify(picture)}`);
+  await scrubs(page);
+  running = await connectsAgain(page, running, out);
+  await fitsAPhone(browser, running.url);
+  assert.deepEqual(errors, []);
+  console.log("the view works in a browser");
+} finally {
+  await browser.close();
+  running?.child.kill("SIGKILL");
+}

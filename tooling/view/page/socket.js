@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// The connection to the program: asks for a message, gives it on, asks for the next (docs/view.md).
+
+const SHORTEST_PAUSE_MS = 90;
+const LONGEST_RETRY_MS = 5000;
+
+// The head of a message, and its body.
+export function parseMessage(buffer) {
+  const length = new DataView(buffer).getUint32(0, true);
+  const head = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, length)));
+  return { head, body: buffer.slice(4 + length) };
+}
+
+// onMessage(head, body); onConnected(true or false). Connects again when the connection is lost.
+export function connect(onMessage, onConnected) {
+  let retry_ms = 500;
+  const open = () => {
+    const address = new URL("socket", location.href);
+    address.protocol = address.protocol.replace("http", "ws");
+    const socket = new WebSocket(address);
+    socket.binaryType = "arraybuffer";
+    const ask = () => { if (socket.readyState === WebSocket.OPEN) socket.send("next"); };
+    socket.onopen = () => {
+      retry_ms = 500;
+      onConnected(true);
+      ask();
+    };
+    socket.onmessage = (event) => {
+      const { head, body } = parseMessage(event.data);
+      onMessage(head, body);
+      if (head.more) ask();
+      else setTimeout(() => requestAnimationFrame(ask), SHORTEST_PAUSE_MS);  // none in a hidden tab
+    };
+    socket.onclose = () => {
+      onConnected(false);
+      setTimeout(open, retry_ms);
+      retry_ms = Math.min(2 * retry_ms, LONGEST_RETRY_MS);
+    };
+  };
+  open();
+}
