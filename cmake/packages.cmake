@@ -21,7 +21,7 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME stillmap)
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "RGB-D SLAM with a clean map of the static world
  The program: trajectory, map and report of a recorded sequence, evaluation, export, rendered sequences.")
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "npm, python3-onnx, sweethome3d-furniture")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "npm, python3-onnx, snakemake, sweethome3d-furniture")
 
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME libstillmap-dev)
 set(CPACK_COMPONENT_DEV_DESCRIPTION "RGB-D SLAM with a clean map of the static world, library
