@@ -12,9 +12,9 @@ import os from "node:os";
 import path from "node:path";
 import { browserLacks, launchBrowser, startView } from "../tests/support/browser.mjs";
 
-const SPEED = "0.12";
+const SPEED = "0.09";
 const WIDTH = 960, HEIGHT = 600;
-const QUALITY = "58";
+const QUALITY = "45";
 const SHOWN_MS = 150;  // of each picture
 const MOST_BYTES = 2e6;
 

@@ -4,7 +4,7 @@
 
 const NEAR_M = 3;
 const LEAST_SHARE = 0.08;
-const POINT_M = 0.022;
+const POINT_M = 0.03;
 
 class Chunk {
   constructor(cell, side) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The connection to the program: asks for a message, gives it on, asks for the next (docs/view.md).
 
-const SHORTEST_PAUSE_MS = 90;
+const SHORTEST_PAUSE_MS = 140;
 const LONGEST_RETRY_MS = 5000;
 
 // The head of a message, and its body.
