@@ -34,6 +34,7 @@ struct RunArguments {
   std::string poses = "estimated";
   std::string objects_out;
   std::string inpainted;
+  bool keep_movers = false;
   ViewerArguments viewer;
 };
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `stillmap export` from outside: what it writes, that other programs read it, and how it refuses.
+#include <cmath>
+#include <cstdio>
 #include <sstream>
 
 #include <fmt/core.h>
@@ -114,6 +116,75 @@ TEST_F(Export, CloudsAreReadByOpen3d) {
     SCOPED_TRACE(name);
     expect_same_points(name);
   }
+}
+
+/// A run folder whose map is a ball with normals, of 30 cm around (0, 0, 2).
+class ExportMesh : public Export {
+ protected:
+  ExportMesh() {
+    PointCloud ball;
+    for (int i = 0; i < 20000; ++i) {
+      const double z = 1 - (2 * i + 1.0) / 20000, angle = 2.399963229728653 * i;
+      const double r = std::sqrt(1 - z * z);
+      const Eigen::Vector3f out =
+          Eigen::Vector3d(r * std::cos(angle), r * std::sin(angle), z).cast<float>();
+      ball.positions.emplace_back(0.3F * out + Eigen::Vector3f(0, 0, 2));
+      ball.normals.push_back(out);
+      ball.colors.push_back({10, 200, 30});
+      ball.labels.push_back(57);
+    }
+    write_file_atomically(folder_ / "result" / "map.ply", encode_ply(ball));
+  }
+};
+
+TEST_F(ExportMesh, MeshesAreReadByAssimp) {
+  if (!have("assimp")) GTEST_SKIP() << "assimp is absent (Debian: assimp-utils)";
+  for (const std::string name : {"ball.ply", "ball.obj", "ball.glb"}) {
+    SCOPED_TRACE(name);
+    ASSERT_EQ(run("export result --mesh " + name).exit_code, 0);
+    ASSERT_EQ(shell("assimp info " + name), 0) << content("log.txt");
+    // The reader's bounds; y and z of a GLB are turned up by its node.
+    std::istringstream info(content("log.txt"));
+    std::vector<double> low(3), high(3);
+    for (std::string line; std::getline(info, line);) {
+      if (!line.starts_with("Minimum point") && !line.starts_with("Maximum point")) continue;
+      std::vector<double>& point = line.starts_with("Min") ? low : high;
+      ASSERT_EQ(
+          std::sscanf(
+              line.c_str() + line.find('('), "(%lf %lf %lf)", &point[0], &point[1], &point[2]),
+          3);
+    }
+    const double middle_z = name.ends_with(".glb") ? -2 : 2;
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_NEAR((low[i] + high[i]) / 2, i == 2 ? middle_z : 0, 0.005) << i;
+      EXPECT_NEAR(high[i] - low[i], 0.6, 0.01) << i;
+    }
+    EXPECT_THAT(content("log.txt"), HasSubstr("Meshes:             1"));
+  }
+}
+
+TEST_F(ExportMesh, MeshesAreReadByOpen3d) {
+  if (shell("/usr/bin/python3 -c 'import open3d'") != 0) {
+    GTEST_SKIP() << "Open3D is absent (Debian: python3-open3d)";
+  }
+  ASSERT_EQ(run("export result --mesh ball.ply").exit_code, 0);
+  write("read.py",
+        "import open3d as o\n"
+        "mesh = o.io.read_triangle_mesh('ball.ply')\n"
+        "assert mesh.has_vertex_colors() and mesh.has_vertex_normals()\n"
+        "assert mesh.is_watertight()\n"
+        "assert abs(mesh.get_volume() - 0.1131) < 0.002, mesh.get_volume()\n");
+  EXPECT_EQ(shell("/usr/bin/python3 read.py"), 0) << content("log.txt");
+}
+
+TEST_F(ExportMesh, RefusesWhatCannotBeDone) {
+  expect_refused("result --mesh ball.stl", ".ply or .obj or .glb");
+  expect_refused("result --mesh ball.ply --mesh-cell 0", "--mesh-cell");
+  PointCloud without = read_ply(folder_ / "result" / "map.ply");
+  without.normals.clear();
+  write_file_atomically(folder_ / "result" / "map.ply", encode_ply(without));
+  expect_refused("result --mesh ball.ply", "the map has no normals");
+  EXPECT_FALSE(exists("ball.ply"));
 }
 
 TEST_F(Export, OctomapKnowsFreeOccupiedAndUnknown) {

@@ -29,6 +29,7 @@
 #include "stillmap/io/atomic_file.hpp"
 #include "stillmap/session/session_io.hpp"
 #include "tooling/pipeline/inpainted_folder.hpp"
+#include "tooling/pipeline/moving_points.hpp"
 #include "tooling/pipeline/object_folder.hpp"
 #include "tooling/pipeline/run_folder.hpp"
 #include "tooling/pipeline/run_sequence.hpp"
@@ -147,24 +148,31 @@ std::optional<LiveOptions> live_options(const RunArguments& arguments) {
   return live;
 }
 
-/// The folders that a run writes a file or more to for every frame.
-class FrameFolders {
+/// What a run keeps of every frame: folders with a file or more for each, and the movers.
+class KeptFrames {
  public:
-  FrameFolders(const RunArguments& arguments, const CameraModel& camera) {
+  KeptFrames(const RunArguments& arguments, const CameraModel& camera) {
     const cv::Size image(camera.width_px, camera.height_px);
     if (!arguments.objects_out.empty()) objects_.emplace(arguments.objects_out, image);
     if (!arguments.inpainted.empty()) inpainted_.emplace(arguments.inpainted, camera);
+    if (arguments.keep_movers) movers_.emplace(camera);
   }
 
   [[nodiscard]] std::vector<Observer*> observers_with(std::vector<Observer*> observers) {
     if (objects_) observers.push_back(&*objects_);
     if (inpainted_) observers.push_back(&*inpainted_);
+    if (movers_) observers.push_back(&*movers_);
     return observers;
+  }
+
+  [[nodiscard]] std::optional<std::string> movers_ply(const Trajectory& final_poses) const {
+    return movers_ ? std::optional(movers_->ply(final_poses)) : std::nullopt;
   }
 
  private:
   std::optional<ObjectFolder> objects_;
   std::optional<InpaintedFolder> inpainted_;
+  std::optional<MovingPoints> movers_;
 };
 
 // The run; what was read is kept, if that is asked for, even where the run fails.
@@ -205,11 +213,11 @@ int run(const RunArguments& arguments) {
   std::vector<std::string> early = input.warnings();
   for (const std::string& warning : early) progress.on_warning(warning);
   if (!chosen.warning.empty()) early.push_back(chosen.warning);
-  FrameFolders folders(arguments, input.frames().camera());
+  KeptFrames kept(arguments, input.frames().camera());
   RunViewer viewer(arguments.viewer,
                    {input.name(), input.frames().size(), input.frames().camera()});
   SequenceRun run = run_and_keep(
-      input, config, std::move(options), folders.observers_with({&progress, viewer.observer()}));
+      input, config, std::move(options), kept.observers_with({&progress, viewer.observer()}));
 
   RunReport& report = run.report;
   report.warnings.insert(report.warnings.begin(), early.begin(), early.end());
@@ -231,7 +239,10 @@ int run(const RunArguments& arguments) {
   // The map of a run that only localises is the one that it was given.
   const Session* const session = arguments.localize_only ? nullptr : &run.session;
   const std::string recording = input.finish_recording();
-  out->write(run.result, report, {run.objects_jsonl, live_lines}, session);
+  out->write(run.result,
+             report,
+             {run.objects_jsonl, live_lines, kept.movers_ply(run.result.trajectory)},
+             session);
   print_output(run_summary(report, input.line(), chosen.line, arguments.out) + recording);
   if (!interruption.empty()) return kInterrupted;
   viewer.stay();
@@ -292,6 +303,9 @@ void add_settings(CLI::App& command, RunArguments& arguments) {
                      arguments.inpainted,
                      "folder for the frames without what moves in them, which shows what earlier "
                      "key frames saw behind it: a sequence");
+  command.add_flag("--keep-movers",
+                   arguments.keep_movers,
+                   "write movers.ply: the points of all that moved, each with its stamp and track");
   command.add_option("--dynamics",
                      arguments.dynamics,
                      fmt::format("what is done about what moves: {}; as dynamics.mode",

@@ -10,6 +10,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tooling/pipeline/lasting_tracks.hpp"
+
 namespace stillmap {
 namespace {
 
@@ -133,16 +135,8 @@ std::vector<ObjectSummary> summarize_objects(std::span<const LoggedFrame> frames
 }
 
 void ObjectLog::on_end(const RunResult& result) {
-  std::map<TrackId, TrackId> known_as;
-  for (const UnitedTracks& united : result.united_tracks) {
-    for (auto& [track, later] : known_as) {
-      if (later == united.later) later = united.earlier;
-    }
-    known_as[united.later] = united.earlier;
-  }
-  const auto rename = [&](TrackId& track) {
-    if (const auto found = known_as.find(track); found != known_as.end()) track = found->second;
-  };
+  const LastingTracks lasting(result.united_tracks);
+  const auto rename = [&lasting](TrackId& track) { track = lasting.of(track); };
   for (auto& [pose, states] : frames_) {
     for (ObjectState& state : states) {
       rename(state.track);

@@ -14,13 +14,14 @@
 namespace stillmap {
 namespace {
 
-constexpr std::array<std::string_view, 10> kFiles = {"trajectory.txt",
+constexpr std::array<std::string_view, 11> kFiles = {"trajectory.txt",
                                                      "keyframes.txt",
                                                      "config.yaml",
                                                      "camera.yaml",
                                                      "objects.jsonl",
                                                      "live.jsonl",
                                                      "map.ply",
+                                                     "movers.ply",
                                                      "report.json",
                                                      "report.html",
                                                      "map.stillmap"};
@@ -40,14 +41,15 @@ RunFolder::RunFolder(const std::filesystem::path& folder)
 
 void RunFolder::write(const RunResult& result,
                       const RunReport& report,
-                      const FrameLines& lines,
+                      const FrameLogs& logs,
                       const Session* session) {
   files_.write("trajectory.txt", format_trajectory(result.trajectory));
   files_.write("keyframes.txt", format_trajectory(result.keyframes));
   files_.write("config.yaml", report.config_yaml);
   files_.write("camera.yaml", format_camera_yaml(report.camera));
-  if (lines.objects_jsonl) files_.write("objects.jsonl", *lines.objects_jsonl);
-  if (lines.live_jsonl) files_.write("live.jsonl", *lines.live_jsonl);
+  if (logs.objects_jsonl) files_.write("objects.jsonl", *logs.objects_jsonl);
+  if (logs.movers_ply) files_.write("movers.ply", *logs.movers_ply);
+  if (logs.live_jsonl) files_.write("live.jsonl", *logs.live_jsonl);
   files_.write("map.ply", encode_ply(result.map));
   files_.write("report.json", report_json(report));
   files_.write("report.html", report_html(report));

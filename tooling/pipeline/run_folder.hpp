@@ -17,10 +17,11 @@ namespace stillmap {
 /// The names of all files that a run may leave in its folder.
 [[nodiscard]] std::span<const std::string_view> run_file_names();
 
-/// Logs with a line per frame, if the run has them.
-struct FrameLines {
+/// What a run has of every frame, if it has it.
+struct FrameLogs {
   std::optional<std::string> objects_jsonl;
   std::optional<std::string> live_jsonl;
+  std::optional<std::string> movers_ply;
 };
 
 /// The folder with the results of a run. They replace those of an earlier run as a whole.
@@ -31,13 +32,13 @@ class RunFolder {
   explicit RunFolder(const std::filesystem::path& folder);
 
   /// Writes trajectory.txt, keyframes.txt, config.yaml, camera.yaml, map.ply, report.json,
-  /// report.html and, where the run has them, objects.jsonl, live.jsonl and map.stillmap: all of
-  /// them or none. A file of an earlier run that this one does not have goes; files of others stay.
-  /// camera.yaml is the camera as used, with the estimated readout time. Throws Error naming the
-  /// file that could not be written. To be called once.
+  /// report.html and, where the run has them, objects.jsonl, live.jsonl, movers.ply and
+  /// map.stillmap: all of them or none. A file of an earlier run that this one does not have goes;
+  /// files of others stay. camera.yaml is the camera as used, with the estimated readout time.
+  /// Throws Error naming the file that could not be written. To be called once.
   void write(const RunResult& result,
              const RunReport& report,
-             const FrameLines& lines,
+             const FrameLogs& logs,
              const Session* session);
 
  private:

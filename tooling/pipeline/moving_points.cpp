@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tooling/pipeline/moving_points.hpp"
+
+#include <array>
+#include <bit>
+#include <cstring>
+#include <map>
+
+#include <fmt/core.h>
+
+#include "stillmap/core/error.hpp"
+#include "tooling/pipeline/lasting_tracks.hpp"
+
+namespace stillmap {
+namespace {
+
+static_assert(std::endian::native == std::endian::little,
+              "values are copied as they are in memory");
+
+constexpr int kStep_px = 3;  // every third pixel of every third row
+
+template <class T>
+void put(std::string& bytes, const T& value) {
+  std::array<char, sizeof(T)> raw;
+  std::memcpy(raw.data(), &value, raw.size());
+  bytes.append(raw.data(), raw.size());
+}
+
+}  // namespace
+
+MovingPoints::MovingPoints(const CameraModel& camera) : rays_(pixel_rays(camera)) {}
+
+void MovingPoints::on_frame(const RgbdFrame& frame, const FrameResult& result) {
+  if (!has_pose(result) || result.object_mask.mat.empty()) return;
+  STILLMAP_CHECK(frame.depth.mat.size() == rays_.size());
+  Frame kept{result.stamp, {}};
+  for (int v = 0; v < rays_.rows; v += kStep_px) {
+    for (int u = 0; u < rays_.cols; u += kStep_px) {
+      const int id = result.object_mask.mat(v, u);
+      const float z = frame.depth.mat(v, u);
+      if (id == 0 || !(z > 0)) continue;
+      const ObjectState& object = result.objects[static_cast<std::size_t>(id) - 1];
+      if (!object.dynamic) continue;
+      const cv::Vec2f& ray = rays_(v, u);
+      const cv::Vec3b& rgb = frame.color.mat(v, u);
+      kept.points.push_back(
+          {{ray[0] * z, ray[1] * z, z}, {rgb[0], rgb[1], rgb[2]}, object.track});
+    }
+  }
+  if (!kept.points.empty()) frames_.push_back(std::move(kept));
+}
+
+void MovingPoints::on_end(const RunResult& result) {
+  const LastingTracks lasting(result.united_tracks);
+  for (Frame& frame : frames_) {
+    for (Point& point : frame.points) point.track = lasting.of(point.track);
+  }
+}
+
+std::string MovingPoints::ply(const Trajectory& final_poses) const {
+  std::map<std::string, const Eigen::Isometry3d*> pose_of;
+  for (const StampedPose& pose : final_poses) pose_of[pose.stamp.text] = &pose.T_world_camera;
+  std::string points;
+  std::size_t count = 0;
+  for (const Frame& frame : frames_) {
+    const auto pose = pose_of.find(frame.stamp.text);
+    if (pose == pose_of.end()) continue;
+    for (const Point& point : frame.points) {
+      const Eigen::Vector3f p = (*pose->second * point.p_camera.cast<double>()).cast<float>();
+      for (const float value : p) put(points, value);
+      for (const std::uint8_t value : point.color) put(points, value);
+      put(points, static_cast<std::int32_t>(point.track.value));
+      put(points, frame.stamp.seconds);
+      ++count;
+    }
+  }
+  return fmt::format(
+             "ply\nformat binary_little_endian 1.0\nelement vertex {}\n"
+             "property float x\nproperty float y\nproperty float z\n"
+             "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+             "property int track\nproperty double stamp\nend_header\n",
+             count) +
+         points;
+}
+
+}  // namespace stillmap
