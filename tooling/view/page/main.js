@@ -74,6 +74,7 @@ function begin(message) {
   shown = -1;
   records.clear();
   scene.clear();
+  scene.setLevel([1, 0, 0, 0, 1, 0, 0, 0, 1]);
   scene.camera.setCamera(start.camera, element("picture"));
   element("title").textContent = start.title;
   document.title = `${start.title} - stillmap`;
@@ -90,7 +91,8 @@ function onMessage(head, body) {
   if (head.start) begin(head.start);
   if (head.state) {
     state = head.state;
-    scene.setLevel(state.level);
+    // What few views show of floor and tables may mislead: until the end, the first camera's axes.
+    if (state.finished) scene.setLevel(state.level);
     if (state.keyframes) showKeyframes();
   }
   if (head.framesAnew) {
