@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tooling/pipeline/moving_points.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <cstddef>
 #include <cstring>
 #include <map>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -17,7 +20,32 @@ namespace {
 static_assert(std::endian::native == std::endian::little,
               "values are copied as they are in memory");
 
-constexpr int kStep_px = 3;  // every third pixel of every third row
+constexpr int kStep_px = 4;       // every fourth pixel of every fourth row
+constexpr float kReach_m = 0.6F;  // of an object, before and behind its middle
+
+/// The depths of an object.
+struct Reach {
+  float nearest_m = 0, farthest_m = 0;
+};
+
+/// Of each object, by its number in the mask: masks also show what is behind the object at its rim.
+std::vector<Reach> reaches(const cv::Mat1f& depth, const cv::Mat1b& mask) {
+  std::vector<std::vector<float>> depths(256);
+  for (int v = 0; v < mask.rows; v += kStep_px) {
+    for (int u = 0; u < mask.cols; u += kStep_px) {
+      if (mask(v, u) != 0 && depth(v, u) > 0) depths[mask(v, u)].push_back(depth(v, u));
+    }
+  }
+  std::vector<Reach> all(depths.size());
+  for (std::size_t id = 0; id < depths.size(); ++id) {
+    std::vector<float>& some = depths[id];
+    if (some.empty()) continue;
+    const auto middle = some.begin() + static_cast<std::ptrdiff_t>(some.size() / 2);
+    std::ranges::nth_element(some, middle);
+    all[id] = {std::max(*middle - kReach_m, 0.0F), *middle + kReach_m};
+  }
+  return all;
+}
 
 template <class T>
 void put(std::string& bytes, const T& value) {
@@ -33,18 +61,18 @@ MovingPoints::MovingPoints(const CameraModel& camera) : rays_(pixel_rays(camera)
 void MovingPoints::on_frame(const RgbdFrame& frame, const FrameResult& result) {
   if (!has_pose(result) || result.object_mask.mat.empty()) return;
   STILLMAP_CHECK(frame.depth.mat.size() == rays_.size());
+  const std::vector<Reach> reach = reaches(frame.depth.mat, result.object_mask.mat);
   Frame kept{result.stamp, {}};
   for (int v = 0; v < rays_.rows; v += kStep_px) {
     for (int u = 0; u < rays_.cols; u += kStep_px) {
-      const int id = result.object_mask.mat(v, u);
+      const std::size_t id = result.object_mask.mat(v, u);
       const float z = frame.depth.mat(v, u);
-      if (id == 0 || !(z > 0)) continue;
-      const ObjectState& object = result.objects[static_cast<std::size_t>(id) - 1];
+      if (id == 0 || !(z > reach[id].nearest_m && z < reach[id].farthest_m)) continue;
+      const ObjectState& object = result.objects[id - 1];
       if (!object.dynamic) continue;
       const cv::Vec2f& ray = rays_(v, u);
       const cv::Vec3b& rgb = frame.color.mat(v, u);
-      kept.points.push_back(
-          {{ray[0] * z, ray[1] * z, z}, {rgb[0], rgb[1], rgb[2]}, object.track});
+      kept.points.push_back({{ray[0] * z, ray[1] * z, z}, {rgb[0], rgb[1], rgb[2]}, object.track});
     }
   }
   if (!kept.points.empty()) frames_.push_back(std::move(kept));

@@ -16,7 +16,8 @@
 
 namespace stillmap {
 
-/// Keeps the surface of what moves: the points of dynamic objects in every frame.
+/// Keeps the surface of what moves: the points of dynamic objects in every frame, within 0.6 m of
+/// the middle of each object's depths.
 class MovingPoints : public Observer {
  public:
   explicit MovingPoints(const CameraModel& camera);

@@ -97,6 +97,7 @@ void OpenPage::begin(const http::request<http::empty_body>& request) {
   socket_.set_option(limits);
   socket_.read_message_max(kLargestQuestion);
   socket_.binary(true);
+  socket_.auto_fragment(false);  // a message is written as a whole anyway
   socket_.async_accept(request, [self = shared_from_this()](error_code error) {
     if (error) return;
     self->serving_.open(self);

@@ -2,7 +2,6 @@
 #include "tooling/view/view_state.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -22,7 +21,7 @@ constexpr int kPictureWidth_px = 320;
 constexpr int kMaskWidth_px = 160;
 constexpr int kGhostPixels = 160;
 // scene_frame() tries some 2000 directions with every point.
-constexpr std::size_t kLevelPoints = 500, kFinalLevelPoints = 4000;
+constexpr std::size_t kLevelPoints = 4000;
 
 std::string dumped(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -112,16 +111,7 @@ void ViewState::add_frame(ViewedFrame frame) {
 
 void ViewState::grow(const ViewedSample& sample) {
   if (!growing_ || finished_) return;
-  const PointCloud added = growing_->add(sample);
-  map_.add(added);
-  grown_from_.push_back({sample.second.stamp, sample.second.T_world_camera});
-  const PointCloud some = spread(added, kLevelPoints / 5);
-  growth_.positions.insert(growth_.positions.end(), some.positions.begin(), some.positions.end());
-  growth_.colors.insert(growth_.colors.end(), some.colors.begin(), some.colors.end());
-  // From the first view, and again when there are four times as many to go by.
-  const std::size_t views = grown_from_.size();
-  if (std::has_single_bit(views) && std::countr_zero(views) % 2 == 0)
-    find_level(spread(growth_, kLevelPoints), grown_from_);
+  map_.add(growing_->add(sample));
 }
 
 void ViewState::find_level(const PointCloud& cloud, const Trajectory& cameras) {
@@ -152,11 +142,10 @@ void ViewState::finish(ViewedEnd end) {
   map_.add(end.map);
   ++map_version_;
   growing_.reset();
-  growth_ = {};
   keyframes_ = std::move(end.keyframes);
   finished_ = true;
   ++state_version_;
-  find_level(spread(end.map, kFinalLevelPoints), end.trajectory);
+  find_level(spread(end.map, kLevelPoints), end.trajectory);
 }
 
 std::string ViewState::next_message(PageProgress& progress) const {

@@ -69,8 +69,6 @@ class ViewState {
   PointChunks map_;
   std::uint64_t map_version_ = 1;  // grows when it is another map
   std::optional<GrowingMap> growing_;
-  PointCloud growth_;      // the points of which the level is found
-  Trajectory grown_from_;  // the cameras that saw them
 
   std::optional<PixelGrid> ghost_grid_;
   std::optional<ViewedSample> newest_;
