@@ -8,10 +8,9 @@
 
 namespace stillmap {
 
-/// The camera of a CameraInfo: K with the distortion of plumb_bob (or of a rational_polynomial
-/// whose further parameters are 0); of rectified images, which have none, P. Depth is in
-/// millimetres, as ROS has it. Throws Error, beginning with `place`, for another distortion and a
-/// camera that is not calibrated.
+/// The camera of a CameraInfo: K with its distortion, that of every lens that camera files may
+/// have; of rectified images, which have none, P. Depth is in millimetres, as ROS has it. Throws
+/// Error, beginning with `place`, for another distortion and a camera that is not calibrated.
 [[nodiscard]] CameraModel camera_of_info(const RosCameraInfo& info,
                                          bool rectified,
                                          const std::string& place);
