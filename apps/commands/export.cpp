@@ -169,11 +169,7 @@ void add_mesh_file(std::vector<FileContent>& files,
   } catch (const Error& error) {
     throw Error("--mesh-cell {}: {}", arguments.mesh_options.cell_m, error.what());
   }
-  const std::string suffix = fs::path(arguments.mesh).extension().string();
-  files.push_back({arguments.mesh,
-                   suffix == ".obj"   ? encode_mesh_obj(mesh)
-                   : suffix == ".glb" ? encode_mesh_glb(mesh)
-                                      : encode_mesh_ply(mesh)});
+  files.push_back({arguments.mesh, encode_mesh(mesh, arguments.mesh)});
 }
 
 void add_octree_file(std::vector<FileContent>& files,

@@ -19,6 +19,7 @@ void add_slam(pybind11::module_& module);
 void add_recordings(pybind11::module_& module);
 void add_sessions(pybind11::module_& module);
 void add_evaluation(pybind11::module_& module);
+void add_mesh(pybind11::module_& module);
 void add_commands(pybind11::module_& module);
 
 }  // namespace stillmap::python

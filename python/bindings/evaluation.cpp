@@ -32,7 +32,8 @@ constexpr const char* kEvaluateMapDoc =
     R"(A map against true surfaces: completeness, ghosts, accuracy.
 
 `map`, `static` (the true static surface) and `dynamic` (what moving things swept) are a PointCloud
-or a PLY file. `groundtruth` and `trajectory`, both or none, align the map; without, map and truth
+or a PLY file, and so is `resting`: moved things where they were last seen to stand, which count on
+neither side. `groundtruth` and `trajectory`, both or none, align the map; without, map and truth
 share a coordinate frame. The dict is that of "map" in `stillmap evaluate map --json`.)";
 
 py::object as_python(const nlohmann::ordered_json& json) {
@@ -71,11 +72,13 @@ py::object evaluate_map(const py::object& map,
                         const py::object& still,
                         const py::object& dynamic,
                         const py::object& groundtruth,
-                        const py::object& trajectory) {
+                        const py::object& trajectory,
+                        const py::object& resting) {
   PointCloud points = cloud_of(map, "map");
   MapTruth truth{cloud_of(still, "static"), std::nullopt};
   if (truth.static_surface.empty()) throw Error("static: no points, expected the true surface");
   if (!dynamic.is_none()) truth.dynamic = cloud_of(dynamic, "dynamic");
+  if (!resting.is_none()) truth.resting = cloud_of(resting, "resting");
   if (groundtruth.is_none() != trajectory.is_none()) {
     throw Error("groundtruth and trajectory align the map together: give both or none");
   }
@@ -109,7 +112,9 @@ void add_evaluation(py::module_& module) {
              py::arg("dynamic") = py::none(),
              py::arg("groundtruth") = py::none(),
              py::arg("trajectory") = py::none(),
-             doc("evaluate_map(map, static, dynamic=None, groundtruth=None, trajectory=None)",
+             py::arg("resting") = py::none(),
+             doc("evaluate_map(map, static, dynamic=None, groundtruth=None, trajectory=None, "
+                 "resting=None)",
                  kEvaluateMapDoc)
                  .c_str());
 }

@@ -24,5 +24,6 @@ PYBIND11_MODULE(_core, module) {
   stillmap::python::add_recordings(module);
   stillmap::python::add_sessions(module);
   stillmap::python::add_evaluation(module);
+  stillmap::python::add_mesh(module);
   stillmap::python::add_commands(module);
 }

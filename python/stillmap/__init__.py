@@ -17,18 +17,20 @@ A camera of your own, frame by frame:
 docs/python.md has more, examples/python has whole programs.
 """
 from ._core import (CLASS_NAMES, Camera, Detections, DetectionsWriter, Error, Frame, FrameResult,
-                    ObjectState, PointCloud, RunResult, Segmenter, Sequence, Session, Slam,
-                    Trajectory, __version__, default_settings, evaluate_map, evaluate_trajectory)
+                    Mesh, ObjectState, PointCloud, RunResult, Segmenter, Sequence, Session, Slam,
+                    Trajectory, __version__, default_settings, evaluate_map, evaluate_trajectory,
+                    surface_mesh)
 from .recording import segment, synth
 from .run import Run, run
 
 __all__ = ["CLASS_NAMES", "Camera", "Detections", "DetectionsWriter", "Error", "Frame",
-           "FrameResult", "ObjectState", "PointCloud", "Run", "RunResult", "Segmenter", "Sequence",
+           "FrameResult", "Mesh", "ObjectState", "PointCloud", "Run", "RunResult", "Segmenter", "Sequence",
            "Session", "Slam", "Trajectory", "__version__", "default_settings", "evaluate_map",
-           "evaluate_trajectory", "run", "segment", "synth"]
+           "evaluate_trajectory", "run", "segment", "surface_mesh",
+           "synth"]
 
 # Messages and help() call the classes by the names under which they are used.
-for _class in (Camera, Detections, DetectionsWriter, Frame, FrameResult, ObjectState, PointCloud,
+for _class in (Camera, Detections, DetectionsWriter, Frame, FrameResult, Mesh, ObjectState, PointCloud,
                RunResult, Segmenter, Sequence, Session, Slam, Trajectory):
     _class.__module__ = __name__
 del _class

@@ -229,4 +229,12 @@ std::string encode_mesh_glb(const Mesh& mesh) {
   return bytes + chunks;
 }
 
+std::string encode_mesh(const Mesh& mesh, const std::filesystem::path& file) {
+  const std::filesystem::path suffix = file.extension();
+  if (suffix == ".ply") return encode_mesh_ply(mesh);
+  if (suffix == ".obj") return encode_mesh_obj(mesh);
+  if (suffix == ".glb") return encode_mesh_glb(mesh);
+  throw Error("{}: expected a name that ends in .ply, .obj or .glb", file.string());
+}
+
 }  // namespace stillmap

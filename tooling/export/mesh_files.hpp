@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 #include "tooling/export/surface_mesh.hpp"
@@ -20,5 +21,8 @@ namespace stillmap {
 /// and, for the label, _LABEL. Its node turns the map's frame, in which y points down at the start
 /// of a run, into glTF's, in which y points up.
 [[nodiscard]] std::string encode_mesh_glb(const Mesh& mesh);
+
+/// In the format that the suffix of `file` names: .ply, .obj or .glb. Throws Error for another.
+[[nodiscard]] std::string encode_mesh(const Mesh& mesh, const std::filesystem::path& file);
 
 }  // namespace stillmap
