@@ -27,7 +27,8 @@ constexpr const char* kSurfaceMeshDoc =
 `cell_m`: edge of the cubes in which the surface is looked for, metres.)";
 
 Mesh mesh_of(const PointCloud& map, double cell_m) {
-  if (map.normals.empty() && !map.empty()) throw Error("map: no normals, expected one for each point");
+  if (map.normals.empty() && !map.empty())
+    throw Error("map: no normals, expected one for each point");
   if (!(cell_m >= 0.001 && cell_m <= 1)) throw Error("cell_m: {}, expected 0.001 to 1", cell_m);
   return map.empty() ? Mesh{} : surface_mesh(map, {.cell_m = cell_m});
 }

@@ -35,9 +35,10 @@ namespace {
 
 constexpr const char* kCameraValues =
     "*, width, height, fx, fy, cx, cy, k1=0.0, k2=0.0, p1=0.0, p2=0.0, k3=0.0, "
-    "depth_factor=5000.0, readout_s=0.0, name='')";
+    "k4=0.0, k5=0.0, k6=0.0, lens='brown_conrady', depth_factor=5000.0, readout_s=0.0, name='')";
 constexpr const char* kCameraDoc =
-    R"(A pinhole camera with the five parameters of OpenCV's distortion, in pixels.
+    R"(A camera, in pixels, with the distortion of OpenCV: k1 to k6, p1 and p2 of a pinhole camera, or
+k1 to k4 of a fish-eye (lens="fisheye").
 
 Camera axes: x right, y down, z forward. `depth_factor`: units of a stored depth image in a metre.
 `readout_s`: the time of a rolling shutter from the first row to the last, seconds; 0 for a global
@@ -57,7 +58,7 @@ struct CameraNumber {
   double CameraModel::*member;
   bool required;
 };
-constexpr std::array<CameraNumber, 11> kCameraNumbers{
+constexpr std::array<CameraNumber, 14> kCameraNumbers{
     {{"fx", &CameraModel::fx, true},
      {"fy", &CameraModel::fy, true},
      {"cx", &CameraModel::cx, true},
@@ -67,6 +68,9 @@ constexpr std::array<CameraNumber, 11> kCameraNumbers{
      {"p1", &CameraModel::p1, false},
      {"p2", &CameraModel::p2, false},
      {"k3", &CameraModel::k3, false},
+     {"k4", &CameraModel::k4, false},
+     {"k5", &CameraModel::k5, false},
+     {"k6", &CameraModel::k6, false},
      {"depth_factor", &CameraModel::depth_factor, false},
      {"readout_s", &CameraModel::readout_s, false}}};
 
@@ -78,9 +82,15 @@ py::array camera_matrix(const CameraModel& camera) {
   return matrix;
 }
 
+LensModel lens_of(const std::string& name) {
+  if (name == "brown_conrady") return LensModel::kBrownConrady;
+  if (name == "fisheye") return LensModel::kFisheye;
+  throw Error("Camera: lens is '{}', expected brown_conrady or fisheye", name);
+}
+
 CameraModel make_camera(const py::kwargs& values) {
   CameraModel camera;
-  std::vector<std::string> known = {"name", "width", "height"};
+  std::vector<std::string> known = {"name", "width", "height", "lens"};
   const auto take = [&](const char* key, auto& member, bool required) {
     if (values.contains(key)) {
       member = py::cast<std::remove_reference_t<decltype(member)>>(values[key]);
@@ -91,6 +101,9 @@ CameraModel make_camera(const py::kwargs& values) {
   take("name", camera.name, false);
   take("width", camera.width_px, true);
   take("height", camera.height_px, true);
+  std::string lens = "brown_conrady";
+  take("lens", lens, false);
+  camera.lens = lens_of(lens);
   for (const CameraNumber& number : kCameraNumbers) {
     take(number.key, camera.*number.member, number.required);
     known.emplace_back(number.key);
@@ -241,6 +254,12 @@ void add_camera(py::module_& module) {
       .def_readonly("name", &CameraModel::name, "Of a built-in camera, or of its file.")
       .def_readonly("width", &CameraModel::width_px, "Columns of both images.")
       .def_readonly("height", &CameraModel::height_px, "Rows of both images.")
+      .def_property_readonly(
+          "lens",
+          [](const CameraModel& self) {
+            return self.lens == LensModel::kFisheye ? "fisheye" : "brown_conrady";
+          },
+          "brown_conrady or fisheye.")
       .def("__repr__", [](const CameraModel& self) {
         return fmt::format("<stillmap.Camera {}{}{} x {}>",
                            self.name,

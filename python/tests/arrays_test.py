@@ -45,6 +45,15 @@ def test_the_poses_are_those_of_the_motion():
     assert np.allclose(middle[:3], [0.06, 0, 1.5], atol=0.005)
 
 
+def test_a_wide_lens_is_read_back_from_its_file(tmp_path):
+    wide = stillmap.Camera(width=640, height=480, fx=200, fy=210, cx=320, cy=240, lens="fisheye",
+                           k1=0.1, k2=0.01, k3=-0.02, k4=0.003)
+    (tmp_path / "wide.yaml").write_text(wide.yaml())
+    back = stillmap.Camera.load(tmp_path / "wide.yaml")
+    assert (back.lens, back.k1, back.k4, back.fy) == ("fisheye", 0.1, 0.003, 210)
+    assert camera().lens == "brown_conrady"
+
+
 @pytest.mark.parametrize("name, change", [
     ("bgr view", lambda color, depth: (color[..., ::-1].copy()[..., ::-1], depth)),
     ("rows apart", lambda color, depth: (np.pad(color, ((0, 0), (0, 9), (0, 0)))[:, :WIDTH],
@@ -168,8 +177,10 @@ def process_after_the_end():
     (lambda: stillmap.Detections(["person"]), "boxes: missing; expected boxes or masks"),
     (lambda: stillmap.Detections(["a"], masks=np.zeros((1, 9, 9))), "masks: object 0 has no pixel"),
     (lambda: stillmap.Detections(["a"], scores=[1, 1], boxes=[[0, 0, 1, 1]]), "scores: 2 of them"),
-    (lambda: stillmap.Camera(width=9, height=9, fx=1, fy=1, cx=0, cy=0, k4=1),
-     "Camera: unknown k4"),
+    (lambda: stillmap.Camera(width=9, height=9, fx=1, fy=1, cx=0, cy=0, k7=1),
+     "Camera: unknown k7"),
+    (lambda: stillmap.Camera(width=9, height=9, fx=1, fy=1, cx=0, cy=0, lens="fish"),
+     "Camera: lens is 'fish', expected brown_conrady or fisheye"),
     (lambda: stillmap.Camera(width=9, height=9), "Camera: fx is missing"),
     (lambda: stillmap.Camera.load("tum_fr7"), "unknown camera 'tum_fr7': did you mean"),
     (lambda: stillmap.Slam(3), "camera: a int, expected a Camera"),
