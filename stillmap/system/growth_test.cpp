@@ -115,9 +115,9 @@ TEST(Growth, ViewsStayAsManyWhereNothingNewIsSeen) {
   all.cloud.views.enough = 0;
   const Outcome with_all = go(10, all);
   EXPECT_GT(with_all.views, early().views + 60);
-  // The map is as good without the additional views.
+  // The map is about as good without the additional views, whose mean has a little less noise.
   EXPECT_GT(late().map.sa, with_all.map.sa - 0.002);
-  EXPECT_LT(*late().map.accuracy_m, 1.05 * *with_all.map.accuracy_m);
+  EXPECT_LT(*late().map.accuracy_m, 1.1 * *with_all.map.accuracy_m);
 }
 
 TEST(Growth, KeyFramesDoNotComeOnlyToGoAgain) {
