@@ -2,6 +2,7 @@
 #include "stillmap/dense/local_cloud.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -9,6 +10,7 @@
 
 #include "stillmap/core/error.hpp"
 #include "stillmap/dense/label_vote.hpp"
+#include "stillmap/dense/mean_color.hpp"
 
 namespace stillmap {
 namespace {
@@ -19,23 +21,18 @@ constexpr float kSteepest = 1e3F;
 struct PointSum {
   std::uint32_t count = 0;
   Eigen::Vector3f position = Eigen::Vector3f::Zero();
-  std::uint32_t red = 0, green = 0, blue = 0;
+  std::array<std::uint32_t, 3> color{};
   LabelVote labels;
 
   void add(const cv::Vec2f& ray, float z, const cv::Vec3b& rgb) {
     position += Eigen::Vector3f(ray[0] * z, ray[1] * z, z);
-    red += rgb[0];
-    green += rgb[1];
-    blue += rgb[2];
+    for (int c = 0; c < 3; ++c) color[static_cast<std::size_t>(c)] += rgb[c];
     ++count;
   }
 
   void append_mean_to(PointCloud& cloud) const {
-    const auto mean = [this](std::uint32_t sum) {
-      return static_cast<std::uint8_t>((sum + count / 2) / count);
-    };
     cloud.positions.emplace_back(position / static_cast<float>(count));
-    cloud.colors.push_back({mean(red), mean(green), mean(blue)});
+    cloud.colors.push_back(mean_color(color, count));
   }
 };
 

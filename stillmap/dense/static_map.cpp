@@ -2,6 +2,7 @@
 #include "stillmap/dense/static_map.hpp"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include <opencv2/imgproc.hpp>
@@ -54,7 +55,7 @@ PointCloud static_map(std::span<const PosedView> views,
   }
   PointCloud all = global_cloud(clouds, config.voxel_size_m, threads);
   if (config.fusion.rule == "surface") {
-    all = fused_surface(all,
+    all = fused_surface(std::move(all),
                         clouds,
                         camera,
                         cell_side(camera.width_px, config.local),

@@ -9,6 +9,7 @@
 
 #include "stillmap/core/error.hpp"
 #include "stillmap/dense/label_vote.hpp"
+#include "stillmap/dense/mean_color.hpp"
 #include "stillmap/dense/point_batches.hpp"
 #include "stillmap/dense/point_groups.hpp"
 #include "stillmap/dense/surface_image.hpp"
@@ -165,11 +166,7 @@ PointCloud one_per_voxel(const PointCloud& cloud, double voxel_size_m) {
   PointCloud thin;
   thin.positions = std::move(voxels.means);
   for (const VoxelSum& sum : sums) {
-    Rgb color{};
-    for (std::size_t c = 0; c < 3; ++c) {
-      color[c] = static_cast<std::uint8_t>((sum.color[c] + sum.count / 2) / sum.count);
-    }
-    thin.colors.push_back(color);
+    thin.colors.push_back(mean_color(sum.color, sum.count));
     if (!cloud.normals.empty()) thin.normals.push_back(sum.normal.normalized());
     if (!cloud.labels.empty()) thin.labels.push_back(sum.labels.winner());
   }
@@ -178,7 +175,7 @@ PointCloud one_per_voxel(const PointCloud& cloud, double voxel_size_m) {
 
 }  // namespace
 
-PointCloud fused_surface(const PointCloud& map,
+PointCloud fused_surface(PointCloud map,
                          std::span<const PosedCloud> clouds,
                          const CameraModel& camera,
                          int cell_px,
@@ -186,12 +183,11 @@ PointCloud fused_surface(const PointCloud& map,
                          const SurfaceFusionConfig& config,
                          std::size_t threads) {
   const Fusion fusion(clouds, camera, cell_px, config, threads);
-  PointCloud fused = map;
   for (int round = 1; round < config.rounds; ++round) {
-    fused = one_per_voxel(fusion.moved<false>(std::move(fused), config.cube_voxels * voxel_size_m),
-                          voxel_size_m);
+    map = one_per_voxel(fusion.moved<false>(std::move(map), config.cube_voxels * voxel_size_m),
+                        voxel_size_m);
   }
-  return one_per_voxel(fusion.moved<true>(std::move(fused), voxel_size_m), voxel_size_m);
+  return one_per_voxel(fusion.moved<true>(std::move(map), voxel_size_m), voxel_size_m);
 }
 
 }  // namespace stillmap

@@ -90,7 +90,7 @@ struct FusionConfig {
 ///
 /// `views` have their world poses; their clouds consist of cells of `cell_px` pixels. The same bits
 /// with any number of threads.
-[[nodiscard]] PointCloud fused_surface(const PointCloud& map,
+[[nodiscard]] PointCloud fused_surface(PointCloud map,
                                        std::span<const PosedCloud> views,
                                        const CameraModel& camera,
                                        int cell_px,

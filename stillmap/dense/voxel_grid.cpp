@@ -6,6 +6,7 @@
 
 #include "stillmap/core/error.hpp"
 #include "stillmap/dense/key_order.hpp"
+#include "stillmap/dense/mean_color.hpp"
 
 namespace stillmap {
 namespace {
@@ -132,11 +133,7 @@ PointCloud VoxelGrid::extract() const {
     const Voxel& voxel = voxel_at(i);
     const Eigen::Vector3d offset = voxel.offset_sum.cast<double>() / voxel.weight;
     cloud.positions.emplace_back(((corner(voxel.key) + offset) * voxel_size_m_).cast<float>());
-    Rgb color{};
-    for (std::size_t c = 0; c < 3; ++c) {
-      color[c] = static_cast<std::uint8_t>((voxel.color_sum[c] + voxel.weight / 2U) / voxel.weight);
-    }
-    cloud.colors.push_back(color);
+    cloud.colors.push_back(mean_color(voxel.color_sum, voxel.weight));
     if (labelled_) cloud.labels.push_back(voxel.labels.winner());
   }
   return cloud;

@@ -5,9 +5,22 @@
 #include <functional>
 #include <vector>
 
+#include <fmt/core.h>
+
+#include "stillmap/core/error.hpp"
 #include "stillmap/sensor/sequence_formats.hpp"
 
 namespace stillmap {
+
+/// What `read()` gives; where it throws an Error, no poses and a warning that says why.
+template <class Read>
+[[nodiscard]] GroundTruth groundtruth_or_warning(const Read& read) {
+  try {
+    return read();
+  } catch (const Error& error) {
+    return {{}, {fmt::format("no ground truth: {}", error.what())}};
+  }
+}
 
 /// True poses in the TUM format. Rows with a number that is not finite are left out, and counted in
 /// a warning; a file that cannot be used for another reason gives a warning and no poses. Stamps in

@@ -44,21 +44,11 @@ std::vector<std::string> left_out_warning(std::size_t frames, const fs::path& pl
   return {fmt::format("{}: {} frames without a finite pose are left out", place.string(), frames)};
 }
 
-// Nothing in place of what cannot be read, with a warning that says why.
-template <class Read>
-GroundTruth or_warning(const Read& read) {
-  try {
-    return read();
-  } catch (const Error& error) {
-    return {{}, {fmt::format("no ground truth: {}", error.what())}};
-  }
-}
-
 }  // namespace
 
 GroundTruth read_pose_files(const std::vector<SequenceEntry>& entries,
                             const std::function<fs::path(const fs::path&)>& pose_file) {
-  return or_warning([&] {
+  return groundtruth_or_warning([&] {
     GroundTruth truth;
     std::size_t left_out = 0;
     for (const SequenceEntry& entry : entries) {
@@ -84,7 +74,7 @@ GroundTruth read_pose_files(const std::vector<SequenceEntry>& entries,
 
 GroundTruth read_pose_log(const fs::path& path, const std::vector<SequenceEntry>& entries) {
   constexpr std::size_t kBlockNumbers = 3 + kMatrixNumbers;
-  return or_warning([&] {
+  return groundtruth_or_warning([&] {
     GroundTruth truth;
     const std::vector<double> numbers = numbers_in(read_text(path, kMaxLogBytes), path.string());
     if (numbers.size() % kBlockNumbers != 0) {

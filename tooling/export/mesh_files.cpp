@@ -1,33 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tooling/export/mesh_files.hpp"
 
-#include <array>
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <iterator>
 #include <map>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "stillmap/core/append_bytes.hpp"
 #include "stillmap/core/error.hpp"
 
 namespace stillmap {
 namespace {
 
-static_assert(std::endian::native == std::endian::little,
-              "values are copied as they are in memory");
-
-template <class T>
-void put(std::string& bytes, const T& value) {
-  std::array<char, sizeof(T)> raw;
-  std::memcpy(raw.data(), &value, raw.size());
-  bytes.append(raw.data(), raw.size());
-}
-
 void put_vector(std::string& bytes, const Eigen::Vector3f& v) {
-  for (const float value : v) put(bytes, value);
+  for (const float value : v) append_bytes(bytes, value);
 }
 
 void check(const Mesh& mesh) {
@@ -107,8 +95,8 @@ int add_normals(GltfBuffer& buffer, const PointCloud& vertices) {
 int add_colors(GltfBuffer& buffer, const PointCloud& vertices) {
   buffer.begin();
   for (const Rgb& color : vertices.colors) {
-    for (const std::uint8_t c : color) put(buffer.bytes(), linear(c));
-    put(buffer.bytes(), std::uint8_t{255});
+    for (const std::uint8_t c : color) append_bytes(buffer.bytes(), linear(c));
+    append_bytes(buffer.bytes(), std::uint8_t{255});
   }
   const int accessor = buffer.end(
       GltfBuffer::Target::kVertices, GltfBuffer::Component::kUint8, "VEC4", vertices.size());
@@ -119,7 +107,8 @@ int add_colors(GltfBuffer& buffer, const PointCloud& vertices) {
 /// Each label takes four bytes, because attributes begin at multiples of four.
 int add_labels(GltfBuffer& buffer, const PointCloud& vertices) {
   buffer.begin();
-  for (const std::uint8_t label : vertices.labels) put(buffer.bytes(), std::uint32_t{label});
+  for (const std::uint8_t label : vertices.labels)
+    append_bytes(buffer.bytes(), std::uint32_t{label});
   return buffer.end(
       GltfBuffer::Target::kVertices, GltfBuffer::Component::kUint8, "SCALAR", vertices.size(), 4);
 }
@@ -127,7 +116,7 @@ int add_labels(GltfBuffer& buffer, const PointCloud& vertices) {
 int add_triangles(GltfBuffer& buffer, const Mesh& mesh) {
   buffer.begin();
   for (const auto& triangle : mesh.triangles) {
-    for (const std::uint32_t i : triangle) put(buffer.bytes(), i);
+    for (const std::uint32_t i : triangle) append_bytes(buffer.bytes(), i);
   }
   return buffer.end(GltfBuffer::Target::kIndices,
                     GltfBuffer::Component::kUint32,
@@ -138,7 +127,7 @@ int add_triangles(GltfBuffer& buffer, const Mesh& mesh) {
 /// A chunk of a GLB, filled up to a multiple of four bytes.
 void put_chunk(std::string& bytes, std::string_view type, std::string data, char filler) {
   data.resize((data.size() + 3) / 4 * 4, filler);
-  put(bytes, static_cast<std::uint32_t>(data.size()));
+  append_bytes(bytes, static_cast<std::uint32_t>(data.size()));
   bytes += type;
   bytes += data;
 }
@@ -160,12 +149,12 @@ std::string encode_mesh_ply(const Mesh& mesh) {
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     put_vector(bytes, vertices.positions[i]);
     put_vector(bytes, vertices.normals[i]);
-    for (const std::uint8_t c : vertices.colors[i]) put(bytes, c);
-    put(bytes, vertices.labels[i]);
+    for (const std::uint8_t c : vertices.colors[i]) append_bytes(bytes, c);
+    append_bytes(bytes, vertices.labels[i]);
   }
   for (const auto& triangle : mesh.triangles) {
-    put(bytes, std::uint8_t{3});
-    for (const std::uint32_t i : triangle) put(bytes, i);
+    append_bytes(bytes, std::uint8_t{3});
+    for (const std::uint32_t i : triangle) append_bytes(bytes, i);
   }
   return bytes;
 }
@@ -224,8 +213,8 @@ std::string encode_mesh_glb(const Mesh& mesh) {
   put_chunk(chunks, "JSON", gltf.dump(), ' ');
   put_chunk(chunks, std::string_view("BIN\0", 4), std::move(buffer.bytes()), '\0');
   std::string bytes = "glTF";
-  put(bytes, std::uint32_t{2});
-  put(bytes, static_cast<std::uint32_t>(12 + chunks.size()));
+  append_bytes(bytes, std::uint32_t{2});
+  append_bytes(bytes, static_cast<std::uint32_t>(12 + chunks.size()));
   return bytes + chunks;
 }
 

@@ -1,18 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tooling/export/pcd.hpp"
 
-#include <array>
-#include <bit>
-#include <cstring>
 #include <iterator>
 
+#include "stillmap/core/append_bytes.hpp"
 #include "stillmap/core/error.hpp"
 
 namespace stillmap {
 namespace {
-
-static_assert(std::endian::native == std::endian::little,
-              "values are copied as they are in memory");
 
 std::uint32_t packed(const Rgb& color) {
   return (std::uint32_t{color[0]} << 16U) | (std::uint32_t{color[1]} << 8U) | color[2];
@@ -20,13 +15,6 @@ std::uint32_t packed(const Rgb& color) {
 
 std::uint32_t label_of(const PointCloud& cloud, std::size_t i) {
   return cloud.labels.empty() ? 0U : cloud.labels[i];
-}
-
-template <class T>
-void append_bytes(std::string& bytes, const T& value) {
-  std::array<char, sizeof(T)> raw;
-  std::memcpy(raw.data(), &value, raw.size());
-  bytes.append(raw.data(), raw.size());
 }
 
 void append_binary(std::string& bytes, const PointCloud& cloud, std::size_t i) {

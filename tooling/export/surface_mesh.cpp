@@ -2,7 +2,6 @@
 #include "tooling/export/surface_mesh.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -20,7 +19,6 @@ constexpr float kLeastWeight = 0.05F;
 
 /// What the points around a place say of the surface there.
 struct LocalSurface {
-  float distance_m = 0;  // signed: positive on the side of the normals
   Eigen::Vector3f normal;
   Rgb color;
   std::uint8_t label;
@@ -55,7 +53,6 @@ class SignedDistance {
       }
     });
     LocalSurface surface;
-    surface.distance_m = sums.distance / sums.weight;
     surface.normal = sums.normal.normalized();
     color /= sums.weight;
     for (std::size_t c = 0; c < 3; ++c) {

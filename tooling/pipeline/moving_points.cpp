@@ -2,23 +2,18 @@
 #include "tooling/pipeline/moving_points.hpp"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cstddef>
-#include <cstring>
 #include <map>
 #include <utility>
 
 #include <fmt/core.h>
 
+#include "stillmap/core/append_bytes.hpp"
 #include "stillmap/core/error.hpp"
 #include "tooling/pipeline/lasting_tracks.hpp"
 
 namespace stillmap {
 namespace {
-
-static_assert(std::endian::native == std::endian::little,
-              "values are copied as they are in memory");
 
 constexpr int kStep_px = 4;       // every fourth pixel of every fourth row
 constexpr float kReach_m = 0.6F;  // of an object, before and behind its middle
@@ -45,13 +40,6 @@ std::vector<Reach> reaches(const cv::Mat1f& depth, const cv::Mat1b& mask) {
     all[id] = {std::max(*middle - kReach_m, 0.0F), *middle + kReach_m};
   }
   return all;
-}
-
-template <class T>
-void put(std::string& bytes, const T& value) {
-  std::array<char, sizeof(T)> raw;
-  std::memcpy(raw.data(), &value, raw.size());
-  bytes.append(raw.data(), raw.size());
 }
 
 }  // namespace
@@ -95,10 +83,10 @@ std::string MovingPoints::ply(const Trajectory& final_poses) const {
     if (pose == pose_of.end()) continue;
     for (const Point& point : frame.points) {
       const Eigen::Vector3f p = (*pose->second * point.p_camera.cast<double>()).cast<float>();
-      for (const float value : p) put(points, value);
-      for (const std::uint8_t value : point.color) put(points, value);
-      put(points, static_cast<std::int32_t>(point.track.value));
-      put(points, frame.stamp.seconds);
+      for (const float value : p) append_bytes(points, value);
+      for (const std::uint8_t value : point.color) append_bytes(points, value);
+      append_bytes(points, static_cast<std::int32_t>(point.track.value));
+      append_bytes(points, frame.stamp.seconds);
       ++count;
     }
   }

@@ -21,6 +21,7 @@
 #include "stillmap/io/text_file.hpp"
 #include "stillmap/sensor/camera_io.hpp"
 #include "stillmap/sensor/camera_values.hpp"
+#include "stillmap/sensor/groundtruth.hpp"
 #include "stillmap/sensor/image_list.hpp"
 #include "tooling/eval/trajectory_files.hpp"
 #include "tooling/recordings/stereo_images.hpp"
@@ -133,15 +134,11 @@ CameraOnBody read_sensor(const fs::path& folder) {
 }
 
 GroundTruth read_poses(const fs::path& file, const Eigen::Isometry3d& T_body_camera) {
-  GroundTruth truth;
-  try {
-    truth.poses = read_any_trajectory(file).poses;
+  return groundtruth_or_warning([&] {
+    GroundTruth truth{read_any_trajectory(file).poses, {}};
     for (StampedPose& pose : truth.poses) pose.T_world_camera = pose.T_world_camera * T_body_camera;
-  } catch (const Error& error) {
-    truth.warnings.push_back(fmt::format("no ground truth: {}", error.what()));
-    truth.poses.clear();
-  }
-  return truth;
+    return truth;
+  });
 }
 
 }  // namespace

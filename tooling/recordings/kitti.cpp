@@ -21,6 +21,7 @@
 #include "stillmap/io/image_io.hpp"
 #include "stillmap/io/text_table.hpp"
 #include "stillmap/sensor/camera_io.hpp"
+#include "stillmap/sensor/groundtruth.hpp"
 #include "stillmap/sensor/numbered_images.hpp"
 #include "tooling/eval/trajectory_files.hpp"
 #include "tooling/recordings/stereo_images.hpp"
@@ -160,8 +161,8 @@ fs::path poses_file(const fs::path& folder) {
 GroundTruth read_poses(const fs::path& file,
                        const std::vector<SequenceEntry>& entries,
                        const Eigen::Vector3d& left) {
-  GroundTruth truth;
-  try {
+  return groundtruth_or_warning([&] {
+    GroundTruth truth;
     const Trajectory rows = read_any_trajectory(file).poses;
     for (const SequenceEntry& entry : entries) {
       const std::optional<std::size_t> number =
@@ -170,10 +171,8 @@ GroundTruth read_poses(const fs::path& file,
       truth.poses.push_back(
           {entry.stamp, rows[*number].T_world_camera * Eigen::Translation3d(left)});
     }
-  } catch (const Error& error) {
-    truth.warnings.push_back(fmt::format("no ground truth: {}", error.what()));
-  }
-  return truth;
+    return truth;
+  });
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tooling/pipeline/lasting_tracks.hpp"
 #include "tooling/report/frame_picture.hpp"
 #include "tooling/report/map_view_data.hpp"
 #include "tooling/report/scene_frame.hpp"
@@ -59,19 +60,6 @@ PointCloud spread(const PointCloud& cloud, std::size_t limit) {
   return some;
 }
 
-// The tracks by which objects are known in the end.
-std::map<std::uint32_t, std::uint32_t> final_tracks(
-    const std::vector<UnitedTracks>& united_tracks) {
-  std::map<std::uint32_t, std::uint32_t> known_as;
-  for (const UnitedTracks& united : united_tracks) {
-    for (auto& [track, later] : known_as) {
-      if (later == united.later.value) later = united.earlier.value;
-    }
-    known_as[united.later.value] = united.earlier.value;
-  }
-  return known_as;
-}
-
 // Moves a frame, and what it saw, to its final pose.
 void move_to(ViewedFrame& frame, const Eigen::Isometry3d& T_world_camera) {
   const Eigen::Isometry3d T_final_then = T_world_camera * frame.T_world_camera.inverse();
@@ -121,7 +109,7 @@ void ViewState::find_level(const PointCloud& cloud, const Trajectory& cameras) {
 }
 
 void ViewState::finish(ViewedEnd end) {
-  const std::map<std::uint32_t, std::uint32_t> tracks = final_tracks(end.united_tracks);
+  const LastingTracks lasting(end.united_tracks);
   std::map<std::string, const StampedPose*> poses;
   for (const StampedPose& pose : end.trajectory) poses[pose.stamp.text] = &pose;
   for (ViewedFrame& frame : frames_) {
@@ -133,8 +121,7 @@ void ViewState::finish(ViewedEnd end) {
       for (ViewedObject& object : frame.objects) object.p_world.reset();
     }
     for (ViewedObject& object : frame.objects) {
-      const auto track = tracks.find(object.track);
-      if (track != tracks.end()) object.track = track->second;
+      object.track = lasting.of(TrackId(object.track)).value;
     }
   }
   ++frames_version_;
