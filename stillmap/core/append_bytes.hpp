@@ -14,8 +14,8 @@ static_assert(std::endian::native == std::endian::little,
 
 /// Appends the bytes of a number, little endian.
 template <class T>
-  requires std::is_arithmetic_v<T>
 void append_bytes(std::string& bytes, T value) {
+  static_assert(std::is_arithmetic_v<T>);
   std::array<char, sizeof(T)> raw;
   std::memcpy(raw.data(), &value, raw.size());
   bytes.append(raw.data(), raw.size());
