@@ -52,22 +52,22 @@ function(stillmap_use_precompiled TARGET NAME)
   target_precompile_headers(${TARGET} REUSE_FROM ${NAME})
 endfunction()
 
-# The tests of a program get the label fast or slow: cmake/slow_tests.cmake has the slow ones.
-include(slow_tests)
+# CTest's list of a program's tests is written when the program is linked (cmake/discover_tests.cmake).
+# cmake/test_kinds.cmake names the slow ones, and those that may be skipped.
+include(test_kinds)
 function(stillmap_discover_tests NAME)
-  set(slow ${stillmap_slow_tests_${NAME}})
-  list(JOIN slow ":" slow)
-  set(discovery TEST_PREFIX ${NAME}. DISCOVERY_TIMEOUT 60)
-  if(slow STREQUAL "*")
-    gtest_discover_tests(${NAME}_test ${discovery} PROPERTIES TIMEOUT 300 LABELS slow)
-  elseif(slow)
-    gtest_discover_tests(${NAME}_test ${discovery} TEST_FILTER ${slow} TEST_LIST ${NAME}_slow
-      PROPERTIES TIMEOUT 300 LABELS slow)
-    gtest_discover_tests(${NAME}_test ${discovery} TEST_FILTER "-${slow}" TEST_LIST ${NAME}_fast
-      PROPERTIES TIMEOUT 300 LABELS fast)
-  else()
-    gtest_discover_tests(${NAME}_test ${discovery} PROPERTIES TIMEOUT 300 LABELS fast)
-  endif()
+  set(list ${CMAKE_CURRENT_BINARY_DIR}/${NAME}_test_list.cmake)
+  list(JOIN stillmap_slow_tests_${NAME} "," slow)
+  list(JOIN stillmap_lone_tests "|" lone)
+  add_custom_command(TARGET ${NAME}_test POST_BUILD
+    COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:${NAME}_test> -DNAME=${NAME} "-DLONE=${lone}" "-DSLOW=${slow}" -DOUT=${list}
+      -P ${PROJECT_SOURCE_DIR}/cmake/discover_tests.cmake
+    VERBATIM)
+  file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/${NAME}_test_include.cmake
+    "if(EXISTS \"${list}\")\n  include(\"${list}\")\nelse()\n  add_test(${NAME}_test_NOT_BUILT ${NAME}_test_NOT_BUILT)\nendif()\n")
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${CMAKE_CURRENT_BINARY_DIR}/${NAME}_test_include.cmake)
+  set_property(TARGET ${NAME}_test APPEND PROPERTY LINK_DEPENDS
+    ${PROJECT_SOURCE_DIR}/cmake/discover_tests.cmake ${PROJECT_SOURCE_DIR}/cmake/test_kinds.cmake)
 endfunction()
 
 function(stillmap_tests NAME)
