@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # From a fresh clone on Debian 12: `make demo` or `make test`, in either order. The work is CMake's;
 # this only installs what is missing and names the usual steps.
-.PHONY: setup models configure build program wheel deb test test-fast demo api bench format tidy fuzz sanitize clean
+.PHONY: setup models configure build program wheel deb test test-fast demo api bench benchmark-page bench-check format tidy fuzz sanitize clean
 .DEFAULT_GOAL := build
 
 program := build/release/bin/stillmap
@@ -80,7 +80,20 @@ bench: setup
 	@cmake --preset release -B build/bench -DSTILLMAP_BUILD_BENCHMARKS=ON -DSTILLMAP_BUILD_TESTS=OFF
 	@cmake --build build/bench --parallel
 	@tools/bench_runs --program build/bench/bin/stillmap --parts build/bench/bin --out build/bench/results.json \
-	  $(if $(filter full,$(BENCH)),--lengths 1000$(comma)3000) $(SEQUENCES)
+	  $(if $(filter full,$(BENCH)),--lengths 1000$(comma)3000) $(addprefix --data ,$(DATA)) $(SEQUENCES)
+
+# All of it, also on the recorded sequences of DATA, into docs/benchmarks.md and a page with plots.
+benchmark-page: DATA ?= $(or $(STILLMAP_DATA),$(wildcard ../shared/data))
+benchmark-page:
+	@$(MAKE) --no-print-directory bench BENCH=full DATA=$(DATA)
+	@tools/benchmark_page build/bench/results.json --html build/bench/benchmarks.html
+	@echo "page        build/bench/benchmarks.html"
+
+# The processor's time of 100 frames, measured by what the same machine needs for a fixed piece of work,
+# against that of the last release.
+bench-check: build
+	@tools/bench_runs --program $(program) --frames 100 --out build/bench/check.json
+	@tools/bench_compare bench/baseline.json build/bench/check.json --only user_cpu_ms --yardstick --at-most 1.5
 
 # The page of the library's classes: build/api/html/index.html.
 api: setup

@@ -5,10 +5,12 @@ import importlib.machinery
 import importlib.util
 import json
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
 import unittest
+import xml.etree.ElementTree
 
 sys.dont_write_bytecode = True
 TOOLS = pathlib.Path(__file__).resolve().parent
@@ -23,7 +25,7 @@ def tool(name):
     return module
 
 
-bench_runs, bench_compare = tool("bench_runs"), tool("bench_compare")
+bench_runs, bench_compare, benchmark_page = tool("bench_runs"), tool("bench_compare"), tool("benchmark_page")
 
 
 class Folder(unittest.TestCase):
@@ -125,6 +127,7 @@ time_ = {"mean": 2.0, "median": 2, "p95": 3, "max": 4}
 stage = {"mean": 1.0 if frames < 50 else 1.5, "median": 1, "p95": 1, "max": 1}
 (out / "report.json").write_text(json.dumps({
     "frames": {"total": frames, "ratio": 1}, "keyframes": frames // 10, "ate": {"rmse": None},
+    "map": {"sa": 0.96, "da": None, "points": 7},
     "time": {"wall_s": 2, "frame_ms": time_, "stages_ms": {"tracking": stage}}, "memory": {"peak_mb": frames}}))
 '''
 
@@ -159,6 +162,31 @@ class Runs(Folder):
         self.assertEqual(grown["stages_ms"], {"tracking": 2.0})  # (80 * 1.5 - 40 * 1) / 40
         self.assertIn("last third against first", done.stdout)
         self.assertEqual(bench_compare.compare(results, results)[1:], ([], []))
+
+    def test_page_has_the_figures(self):
+        self.assertEqual(self.bench("--lengths", "40").returncode, 0)
+        docs, page = self.folder / "docs.md", self.folder / "page.html"
+        docs.write_text(f"What it is.\n{benchmark_page.MARKER}old figures\n")
+        done = subprocess.run([TOOLS / "benchmark_page", self.folder / "results.json", "--docs", docs, "--html", page],
+                              capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        text = docs.read_text()
+        self.assertTrue(text.startswith(f"What it is.\n{benchmark_page.MARKER}"))
+        self.assertNotIn("old figures", text)
+        self.assertIn("| office | 3 |  | 100.0% | 0.960 |  |  |  |  |\n", text)
+        self.assertIn("| office, 40 frames, 1 thread | 20.0 |", text)
+        self.assertIn("| office, from 3 to 40 frames | 4 |", text)
+        self.assertIn("<polyline", page.read_text())
+        xml.etree.ElementTree.fromstring(re.search("<svg.*?</svg>", page.read_text()).group())
+        (self.folder / "results.json").write_text("{}")
+        bad = subprocess.run([TOOLS / "benchmark_page", self.folder / "results.json", "--docs", docs], capture_output=True, text=True)
+        self.assertEqual((bad.returncode, bad.stderr.count("\n"), docs.read_text()), (1, 1, text))
+
+    def test_data_are_the_sequences_with_ground_truth(self):
+        folder = self.sequence("with")
+        (self.sequence("without") / "groundtruth.txt").unlink()
+        self.assertEqual(bench_runs.below(self.folder),
+                         [{"name": "with", "folder": str(folder), "detections": str(folder / "detections")}])
 
     def test_failure_is_one_line(self):
         done = self.bench("--lengths", "13")
@@ -215,6 +243,18 @@ class Compare(Folder):
     def test_only(self):
         rows, gone, new = bench_compare.compare(self.BEFORE, self.AFTER, ["thirds"])
         self.assertEqual(([row[0] for row in rows], gone, new), ([1.25], [], []))
+
+    def test_yardstick(self):
+        # Twice as slow a machine takes twice the milliseconds; other figures stay as they are.
+        rows, _, _ = bench_compare.compare(self.BEFORE, self.AFTER, ["mean", "extract"], 2.0)
+        self.assertEqual([row[0] for row in rows], [1.5, 0.25])
+        for name, results, ms in (("a.json", self.BEFORE, 10), ("b.json", self.AFTER, 20)):
+            (self.folder / name).write_text(json.dumps(results | {"machine": {"yardstick_ms": ms}}))
+        command = [TOOLS / "bench_compare", "a.json", "b.json", "--only", "mean", "--yardstick", "--at-most"]
+        self.assertEqual(subprocess.run([*command, "1.6"], cwd=self.folder, capture_output=True).returncode, 0)
+        bad = subprocess.run([*command, "1.4"], cwd=self.folder, capture_output=True, text=True)
+        self.assertEqual((bad.returncode, bad.stderr), (1, "tools/bench_compare: runs / office / frame_ms / mean: 1.50 times that "
+                                                           "before, at most 1.4\n"))
 
     def test_program(self):
         for name, results in (("a.json", self.BEFORE), ("b.json", self.AFTER), ("c.json", [])):
