@@ -26,6 +26,7 @@ def tool(name):
 
 
 bench_runs, bench_compare, benchmark_page = tool("bench_runs"), tool("bench_compare"), tool("benchmark_page")
+soak = tool("soak")
 
 
 class Folder(unittest.TestCase):
@@ -223,6 +224,26 @@ class Thirds(unittest.TestCase):
         self.assertEqual([round(t["wall_ms"], 6) for t in found], [10, 10, 40])
         self.assertEqual([round(t["cpu_ms"], 6) for t in found], [5, 5, 20])
         self.assertEqual([t["memory_mb"] for t in found], [101, 201, 301])
+
+
+class Soak(unittest.TestCase):
+    @staticmethod
+    def readings(mb_per_frame=0.0, slower=1.0, handles=0):
+        """10 ms of the processor a frame, and `slower` times that in the second half."""
+        return [watched_run.Sample(f, f, 0.01 * (min(f, 5000) + slower * max(0, f - 5000)), 100 + mb_per_frame * f,
+                                   9 + (handles if f > 5000 else 0)) for f in range(100, 10001, 100)]
+
+    def test_a_level_run_has_nothing_wrong(self):
+        figures, wrong = soak.judged(self.readings())
+        self.assertEqual(wrong, [])
+        self.assertAlmostEqual(figures["cpu_ms"][1], 10)
+
+    def test_what_grows_is_named(self):
+        figures, wrong = soak.judged(self.readings(mb_per_frame=2e-4))
+        self.assertAlmostEqual(figures["mb_per_10000_frames"], 2.0)
+        self.assertEqual(wrong, ["memory grows by 2.00 MB in 10,000 frames"])
+        self.assertEqual(soak.judged(self.readings(slower=2.0))[1], ["a frame takes 20.00 ms at the end, 10.00 at first"])
+        self.assertEqual(soak.judged(self.readings(handles=1))[1], ["10 handles are open, 9 at first"])
 
 
 class Compare(Folder):

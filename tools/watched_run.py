@@ -28,6 +28,7 @@ class Sample:
     wall_s: float
     cpu_s: float  # in user mode, of all threads
     memory_mb: float  # resident
+    handles: int = 0  # open files, sockets and the like
 
 
 @dataclasses.dataclass
@@ -39,10 +40,10 @@ class Watched:
 
 
 def used(pid):
-    """Processor time in user mode, and resident memory."""
+    """Processor time in user mode, resident memory, and open handles."""
     stat = pathlib.Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
     resident = int(pathlib.Path(f"/proc/{pid}/statm").read_text().split()[1])
-    return int(stat[11]) / TICKS_PER_S, resident * PAGE_MB
+    return int(stat[11]) / TICKS_PER_S, resident * PAGE_MB, len(os.listdir(f"/proc/{pid}/fd"))
 
 
 def chunks(terminal):
@@ -73,9 +74,9 @@ def watch(command):
         text = (text + data)[-65536:]
         found = DONE.findall(data)
         if found:
-            cpu_s, memory_mb = used(process.pid)
+            cpu_s, memory_mb, handles = used(process.pid)
             if memory_mb > 0:  # else it has ended meanwhile
-                samples.append(Sample(int(found[-1][0]), time.monotonic() - began, cpu_s, memory_mb))
+                samples.append(Sample(int(found[-1][0]), time.monotonic() - began, cpu_s, memory_mb, handles))
     os.close(terminal)
     _, status, usage = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(status)
