@@ -40,10 +40,10 @@ FrameReading FrameReader::read(const SequenceContent& content,
   frame.id = id;
   frame.stamp = entry.stamp;
   frame.depth_stamp_s = entry.depth_stamp_s;
-  ColorFile color = content.images->color(id.index());
-  frame.color = std::move(color.color);
+  ImagePair images = content.images->pair(id.index(), camera_.depth_factor);
+  frame.color = std::move(images.color.color);
   check_image_size(frame.color.mat, camera_, color_place, name);
-  frame.depth = content.images->depth(id.index(), camera_.depth_factor);
+  frame.depth = std::move(images.depth);
   if (registration_) {
     const CameraModel& depth = camera_.depth_camera->camera;
     check_image_size(frame.depth.mat, depth, depth_place, "the depth camera of " + name);
@@ -51,7 +51,7 @@ FrameReading FrameReader::read(const SequenceContent& content,
   }
   check_image_size(frame.depth.mat, camera_, depth_place, name);
   frame.gray = to_gray(frame.color);
-  return {std::make_shared<const RgbdFrame>(std::move(frame)), std::move(color.warning)};
+  return {std::make_shared<const RgbdFrame>(std::move(frame)), std::move(images.color.warning)};
 }
 
 }  // namespace stillmap

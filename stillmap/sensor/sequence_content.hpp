@@ -24,6 +24,12 @@ struct SequenceEntry {
   std::filesystem::path depth_file;  ///< empty where the recording is one file
 };
 
+/// The images of an entry.
+struct ImagePair {
+  ColorFile color;
+  DepthImage depth;
+};
+
 /// Decodes the images of a sequence, each when it is asked for. Any thread may call, several at a
 /// time. Throws DamagedImage for an image that is missing or broken, and Error for one of the wrong
 /// kind; both name it.
@@ -39,6 +45,10 @@ class ImageReader {
   /// The depth image of the entry `index`; `depth_factor` is that of the camera, for formats that
   /// do not tell the unit of their depth.
   [[nodiscard]] virtual DepthImage depth(std::size_t index, double depth_factor) const = 0;
+  /// Both, in less time where one is made with the other.
+  [[nodiscard]] virtual ImagePair pair(std::size_t index, double depth_factor) const {
+    return {color(index), depth(index, depth_factor)};
+  }
 };
 
 /// The true poses of a recording, and what was wrong with them.

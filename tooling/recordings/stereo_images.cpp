@@ -21,9 +21,14 @@ class StereoImages : public ImageReader {
     left.color = rig_->rectified_left(left.color);
     return left;
   }
-  [[nodiscard]] DepthImage depth(std::size_t index, double /*depth_factor*/) const override {
+  [[nodiscard]] DepthImage depth(std::size_t index, double depth_factor) const override {
+    return pair(index, depth_factor).depth;
+  }
+  [[nodiscard]] ImagePair pair(std::size_t index, double /*depth_factor*/) const override {
+    ImagePair images{color(index), {}};
     const ColorFile right = read_image(entries_.at(index).depth_file);
-    return rig_->depth(color(index).color, rig_->rectified_right(right.color));
+    images.depth = rig_->depth(images.color.color, rig_->rectified_right(right.color));
+    return images;
   }
 
  private:
