@@ -182,6 +182,40 @@ TEST_F(Objects, OfALiveRunAreThoseOfTheRunMadeAgain) {
   expect_refused("run wall --out c --live --replay bad.jsonl", "bad.jsonl:1:");
 }
 
+// A rough mask and a box alone: `segment` gives them the masks that the run would.
+TEST_F(Objects, OfSegmentAreThoseOfTheRun) {
+  std::string lines = content("found/detections.jsonl");
+  const std::string box = "[10,10,70,110]";
+  for (std::size_t at = lines.find(box); at != std::string::npos; at = lines.find(box, at + 1)) {
+    lines.insert(at + box.size(), R"(,"mask":"rough")");
+  }
+  write("found/detections.jsonl", lines);
+  for (const auto& file : std::filesystem::directory_iterator(folder_ / "found/masks")) {
+    const cv::Mat1b both = read_mask(file.path());
+    cv::Mat1b person = both.clone();
+    person.setTo(0, both != 1);
+    write("found/masks/" + file.path().filename().string(), encode_mask_png(person));
+  }
+  ASSERT_EQ(run("segment wall --out again --segmenter detections:found").exit_code, 0);
+  const std::string again = content("again/detections.jsonl");
+  EXPECT_THAT(again, HasSubstr(R"("mask":"depth")"));
+  EXPECT_THAT(again, testing::Not(HasSubstr("rough")));
+  for (const std::string from : {"found", "again"}) {
+    ASSERT_EQ(run("run wall --out " + from + "-run --segmenter detections:" + from +
+                  " --write-objects " + from + "-used")
+                  .exit_code,
+              0);
+  }
+  for (const std::string file : {"-run/trajectory.txt",
+                                 "-run/objects.jsonl",
+                                 "-run/map.ply",
+                                 "-used/detections.jsonl",
+                                 "-used/masks/100.400000.png",
+                                 "-used/masks/100.433333.png"}) {
+    EXPECT_EQ(content("found" + file), content("again" + file)) << file;
+  }
+}
+
 TEST_F(Objects, OfAnEarlierRunDoNotStay) {
   ASSERT_EQ(run("run wall --out out --segmenter detections:found --dynamics mask").exit_code, 0);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "out/objects.jsonl"));

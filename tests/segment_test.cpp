@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <opencv2/core.hpp>
 
 #include "stillmap/io/image_io.hpp"
 #include "tests/support/cli_fixture.hpp"
@@ -18,13 +19,18 @@ using testing::StartsWith;
 
 class Segment : public Cli {
  protected:
-  // Three frames of 64x48; detections of them in found/, a mask for the second.
+  const cv::Rect kThing{3, 4, 24, 34};
+  // Three frames of 64x48 that show a thing at 1 m; detections of them in found/, a mask for the
+  // second.
   Segment() {
     for (const char* folder : {"s/rgb", "s/depth", "s/truth", "found/masks"}) {
       std::filesystem::create_directories(folder_ / folder);
     }
     const ColorImage color(cv::Mat3b(48, 64, cv::Vec3b(9, 99, 199)));
-    const DepthImage depth(cv::Mat1f(48, 64, 1.0F));
+    const DepthImage depth(cv::Mat1f(48, 64, 2.0F));
+    depth.mat(kThing).setTo(1.0F);
+    write("s/camera.yaml",
+          "width: 64\nheight: 48\nfx: 60\nfy: 60\ncx: 32\ncy: 24\ndepth_factor: 5000\n");
     std::string rgb, depths, lines;
     for (const char* stamp : {"1.0", "1.1", "1.2"}) {
       const std::string name = std::string(stamp) + ".png";
@@ -45,15 +51,35 @@ class Segment : public Cli {
   }
 };
 
+// Boxes alone get masks by depth; the network's mask stays.
 TEST_F(Segment, WritesTheFolder) {
   const Outcome outcome = run("segment s --out again --segmenter detections:found --threads 3");
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_THAT(outcome.err, IsEmpty());
   EXPECT_THAT(outcome.out, StartsWith("detections  3 objects in 3 frames, in again\n"));
+  const std::string object = R"([{"id":1,"class":"person","score":0.5,"box":[1,2,30,40])";
+  EXPECT_EQ(content("again/detections.jsonl"),
+            R"({"stamp":"1.0","objects":)" + object + ",\"mask\":\"depth\"}]}\n" +
+                R"({"stamp":"1.1","objects":)" + object + "}]}\n" + R"({"stamp":"1.2","objects":)" +
+                object + ",\"mask\":\"depth\"}]}\n");
+  const cv::Mat1b given = read_mask(folder_ / "again/masks/1.1.png");
+  EXPECT_EQ(given(5, 6), 1);
+  EXPECT_EQ(cv::countNonZero(given), 1);
+  const cv::Mat1b by_depth = read_mask(folder_ / "again/masks/1.0.png");
+  EXPECT_GT(cv::countNonZero(by_depth(kThing)), 0.9 * kThing.area());
+  EXPECT_LT(cv::countNonZero(by_depth), 1.1 * kThing.area());
+}
+
+TEST_F(Segment, LeavesMasksByDepthToTheRunWhereNoCameraIsKnown) {
+  std::filesystem::remove(folder_ / "s/camera.yaml");
+  const Outcome outcome = run("segment s --out again --segmenter detections:found");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("masks by depth are left to `stillmap run`"));
   EXPECT_EQ(content("again/detections.jsonl"), content("found/detections.jsonl"));
-  const cv::Mat1b mask = read_mask(folder_ / "again/masks/1.1.png");
-  EXPECT_EQ(mask(5, 6), 4);
+  EXPECT_EQ(read_mask(folder_ / "again/masks/1.1.png")(5, 6), 4);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "again/masks/1.0.png"));
+  expect_refused("segment s --out more --segmenter detections:found --camera none.yaml",
+                 "none.yaml");
 }
 
 // The images are called by numbers, and so are the masks.

@@ -2,8 +2,10 @@
 #include <chrono>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -14,12 +16,14 @@
 #include "apps/image_names.hpp"
 #include "apps/option_value.hpp"
 #include "apps/progress_bar.hpp"
+#include "apps/sensor_camera.hpp"
 #include "apps/sequence_option.hpp"
 #include "stillmap/concurrency/parallel.hpp"
 #include "stillmap/core/error.hpp"
 #include "stillmap/io/image_io.hpp"
 #include "stillmap/perception/detections/class_names.hpp"
 #include "stillmap/perception/detections/detections_io.hpp"
+#include "stillmap/perception/objects/object_tracker.hpp"
 #include "stillmap/perception/segmentation/segmenter.hpp"
 #include "stillmap/sensor/image_warnings.hpp"
 #include "stillmap/sensor/sequence_formats.hpp"
@@ -34,11 +38,13 @@ struct SegmentArguments {
   SequenceArguments sequence;
   std::string out;
   std::string segmenter;
+  std::optional<double> depth_factor;
   std::size_t threads = 2;
 };
 
 struct Found {
   FrameDetections detections;
+  DepthImage depth;     // empty where it is not used, or damaged
   std::string damage;   // why the image could not be read; empty if it could
   std::string warning;  // what is wrong with its file beside the pixels
 };
@@ -63,8 +69,54 @@ cv::Size image_size(const SequenceContent& content) {
   throw Error("a sequence without images");
 }
 
+// The sequence with a camera that tells metres; nothing, and why not, where none is known.
+std::optional<Sequence> open_with_depth(const SegmentArguments& arguments, std::string& why_not) {
+  try {
+    Sequence sequence = open_sequence(arguments.sequence);
+    sequence.use_camera(sensor_camera(sequence, {}, arguments.depth_factor).camera);
+    return sequence;
+  } catch (const Error& error) {
+    // What a user named has to be right.
+    if (!arguments.sequence.camera.empty() || arguments.depth_factor) throw;
+    why_not = error.what();
+    return std::nullopt;
+  }
+}
+
+DepthImage depth_of(const Sequence& sequence, std::size_t index, cv::Size size) {
+  try {
+    const FramePtr frame = sequence.read(FrameId(static_cast<std::uint32_t>(index)));
+    return frame->depth.mat.size() == size ? frame->depth : DepthImage();
+  } catch (const DamagedImage&) {
+    return {};  // a run leaves this frame out
+  }
+}
+
+// Gives the objects of one frame after another the masks that a run gives them.
+class DepthMasks {
+ public:
+  FrameDetections complete(FrameDetections detections, const DepthImage& depth) {
+    if (depth.mat.empty()) return detections;
+    const FrameObjects objects =
+        tracker_.push({FrameId(frames_++), std::move(detections), depth}).value();
+    FrameDetections result{objects.stamp, {}, objects.mask};
+    for (const TrackedObject& object : objects.objects) {
+      if (!object.filled) result.objects.push_back(object.detection);
+    }
+    const auto detected = static_cast<double>(result.objects.size());
+    if (result.mask.mat.empty() || result.objects.size() == objects.objects.size()) return result;
+    result.mask.mat.setTo(0, result.mask.mat > detected);  // filled objects come last
+    return result;
+  }
+
+ private:
+  ObjectTracker tracker_{{}, FillRule::kCausal};
+  std::uint32_t frames_ = 0;
+};
+
 Found segment_frame(const Segmenter& segmenter,
                     const SequenceContent& content,
+                    const std::optional<Sequence>& with_depth,
                     std::size_t index,
                     cv::Size size) {
   const SequenceEntry& entry = content.entries[index];
@@ -81,6 +133,7 @@ Found segment_frame(const Segmenter& segmenter,
     }
     frame.detections = segmenter.segment(color, entry.stamp);
     frame.warning = warning;
+    if (with_depth) frame.depth = depth_of(*with_depth, index, size);
   } catch (const DamagedImage& damage) {
     frame.damage = damage.what();
   }
@@ -106,22 +159,26 @@ void segment(const SegmentArguments& arguments) {
       });
   DetectionsWriter writer(arguments.out, size);
 
+  std::string no_depth;
+  const std::optional<Sequence> with_depth = open_with_depth(arguments, no_depth);
+  DepthMasks masks;
   std::size_t objects = 0;
   std::set<std::string> unknown;
   ImageWarnings warnings;
   ProgressBar progress("frames");
   for (const std::string& warning : content.remarks.warnings) progress.warn(warning);
+  if (!no_depth.empty()) progress.warn(no_depth + "; masks by depth are left to `stillmap run`");
   const auto start = std::chrono::steady_clock::now();
   produce_in_parallel(
       entries.size(),
       arguments.threads,
-      [&](std::size_t i) { return segment_frame(*segmenter, content, i, size); },
+      [&](std::size_t i) { return segment_frame(*segmenter, content, with_depth, i, size); },
       [&](std::size_t i, const Found& frame) {
         if (!frame.damage.empty()) {
           progress.warn(frame.damage + "; taken for a frame without objects");
         }
         warnings.add(frame.warning);
-        writer.add(frame.detections);
+        writer.add(masks.complete(frame.detections, frame.depth));
         add_unknown_classes(frame.detections, unknown);
         objects += frame.detections.objects.size();
         progress.show(i + 1, entries.size());
@@ -159,6 +216,13 @@ void add_segment_command(CLI::App& app, CommandResult&) {
                    "auto (the networks that tools/fetch_models gets), onnx:MODEL.onnx, "
                    "detections:DIR or masks:DIR (plain masks of people)")
       ->required();
+  command->add_option(
+      "--camera", arguments->sequence.camera, "its name or file, as for `run`; for masks by depth");
+  command
+      ->add_option("--depth-factor",
+                   arguments->depth_factor,
+                   "units of a depth image per metre, such as 1000; instead of the camera's")
+      ->check(CLI::PositiveNumber);
   command
       ->add_option(
           "--threads", arguments->threads, "number of frames that are processed in parallel")

@@ -56,13 +56,16 @@ bool DenseStage::is_due(std::int64_t record) const {
 
 void DenseStage::leave_out_missed(ViewRecord& made,
                                   const Session& session,
-                                  const Eigen::Isometry3d& T_odometry_world) const {
+                                  const Eigen::Isometry3d& T_odometry_world) {
   if (config_.missed_people != "on") return;
   const FrameRecord& frame = session.frames[made.frame];
-  std::vector<Eigen::Vector3d> places = missed_.places_at(frame.stamp.seconds);
-  if (places.empty()) return;
   const Eigen::Isometry3d T_camera_odometry =
       (T_odometry_world * T_world_frame(session, frame)).inverse();
+  std::vector<Eigen::Vector3d> places =
+      standing_.unseen_in(*made.view, camera_, T_camera_odometry, frame.stamp.seconds);
+  const std::vector<Eigen::Vector3d> moving = missed_.places_at(frame.stamp.seconds);
+  places.insert(places.end(), moving.begin(), moving.end());
+  if (places.empty()) return;
   for (Eigen::Vector3d& p : places) p = T_camera_odometry * p;
   made.view = std::make_shared<const StaticView>(
       without_places(*made.view, places, config_.missed.reach_m));

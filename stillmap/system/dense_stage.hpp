@@ -9,6 +9,7 @@
 #include "stillmap/concurrency/job_ledger.hpp"
 #include "stillmap/concurrency/stage_probe.hpp"
 #include "stillmap/dense/missed_movers.hpp"
+#include "stillmap/dense/standing_people.hpp"
 #include "stillmap/dense/static_map.hpp"
 #include "stillmap/perception/motion/dynamics_stage.hpp"
 #include "stillmap/session/session.hpp"
@@ -36,6 +37,8 @@ class DenseStage {
 
   /// Remembers the people in a frame, found in it or filled in.
   void remember_movers(double stamp_s, std::vector<MoverSighting> movers) {
+    if (config_.missed_people != "on") return;
+    standing_.remember(stamp_s, movers);
     missed_.remember(stamp_s, std::move(movers));
   }
 
@@ -58,13 +61,14 @@ class DenseStage {
   [[nodiscard]] bool is_due(std::int64_t record) const;
   void leave_out_missed(ViewRecord& made,
                         const Session& session,
-                        const Eigen::Isometry3d& T_odometry_world) const;
+                        const Eigen::Isometry3d& T_odometry_world);
   [[nodiscard]] bool is_worth_keeping(const Session& session, const ViewRecord& made) const;
 
   CloudConfig config_;
   CameraModel camera_;
   cv::Mat2f rays_;
   MissedMovers missed_;
+  StandingPeople standing_;
   std::optional<std::int64_t> last_;  // record of the last view's frame
   JobLedger<ViewRecord> jobs_;
 };

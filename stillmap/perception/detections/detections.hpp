@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,12 +30,21 @@ struct PixelBox {
   bool operator==(const PixelBox&) const = default;
 };
 
+/// Where the pixels of an object come from.
+enum class PixelSource : std::uint8_t {
+  kNetwork,       ///< a network that knows outlines, or a person; also where there are no pixels
+  kRoughNetwork,  ///< a network that sees one box and little of what surrounds it: outlines by
+                  ///< depth are better
+  kDepth,         ///< depth in the box, because the network gave the box alone
+};
+
 /// An object that a network, or a substitute for one, found in an image.
 struct DetectedObject {
   int id = 0;              ///< 1 to 255, unique in its frame; unrelated to ids in other frames
   std::string class_name;  ///< the COCO name if there is one
   float score = 0;         ///< confidence of the network, in [0, 1]
   PixelBox box;            ///< not empty
+  PixelSource pixel_source = PixelSource::kNetwork;  ///< of its pixels
 
   /// Exact equality of all members.
   bool operator==(const DetectedObject&) const = default;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stillmap/perception/detections/detections_line.hpp"
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <set>
@@ -104,6 +105,28 @@ PixelBox parse_box(const Json& value, cv::Size image, const std::string& place) 
   return box;
 }
 
+struct NamedOrigin {
+  std::string_view name;
+  PixelSource origin;
+};
+// A network's masks have no such entry.
+constexpr std::array kOrigins = {NamedOrigin{"rough", PixelSource::kRoughNetwork},
+                                 NamedOrigin{"depth", PixelSource::kDepth}};
+
+PixelSource parse_origin(const Json& object, const std::string& place) {
+  const Json::const_iterator found = object.find("mask");
+  if (found == object.end()) return PixelSource::kNetwork;
+  const std::string text = found->is_string() ? found->get<std::string>() : std::string();
+  const auto* known = std::ranges::find(kOrigins, text, &NamedOrigin::name);
+  if (known != kOrigins.end()) return known->origin;
+  throw Error(R"({}: mask is neither "rough" nor "depth")", place);
+}
+
+std::string format_origin(PixelSource origin) {
+  const auto* known = std::ranges::find(kOrigins, origin, &NamedOrigin::origin);
+  return known == kOrigins.end() ? "" : fmt::format(R"(,"mask":"{}")", known->name);
+}
+
 DetectedObject parse_object(const Json& value, cv::Size image, const std::string& place) {
   if (!value.is_object()) throw Error("{}: an element of 'objects' is no object", place);
   DetectedObject object;
@@ -112,19 +135,21 @@ DetectedObject parse_object(const Json& value, cv::Size image, const std::string
   object.class_name = parse_class(member(value, "class", of), of);
   object.score = parse_score(member(value, "score", of), of);
   object.box = parse_box(member(value, "box", of), image, of);
+  object.pixel_source = parse_origin(value, of);
   return object;
 }
 
 std::string format_object(const DetectedObject& object) {
   const PixelBox& box = object.box;
-  return fmt::format(R"({{"id":{},"class":{},"score":{},"box":[{},{},{},{}]}})",
+  return fmt::format(R"({{"id":{},"class":{},"score":{},"box":[{},{},{},{}]{}}})",
                      object.id,
                      quoted(object.class_name),
                      object.score,
                      box.x0,
                      box.y0,
                      box.x1,
-                     box.y1);
+                     box.y1,
+                     format_origin(object.pixel_source));
 }
 
 }  // namespace

@@ -55,6 +55,21 @@ TEST(ParseDetectionsLine, GivesWhatTheLineSays) {
   EXPECT_EQ(line.objects, expected);
 }
 
+TEST(ParseDetectionsLine, KnowsWhereMasksComeFrom) {
+  const std::string text =
+      R"({"stamp":"7","objects":[{"id":1,"class":"person","score":0.5,"box":[1,2,30,40],"mask":"rough"},)"
+      R"({"id":2,"class":"chair","score":0.5,"box":[1,2,30,40],"mask":"depth"}]})";
+  const DetectionsLine line = parse(text);
+  ASSERT_EQ(line.objects.size(), 2U);
+  EXPECT_EQ(line.objects[0].pixel_source, PixelSource::kRoughNetwork);
+  EXPECT_EQ(line.objects[1].pixel_source, PixelSource::kDepth);
+  EXPECT_EQ(format_detections_line({line.stamp, line.objects, {}}), text);
+  for (const char* other : {R"("precise")", "1", "null"}) {
+    EXPECT_THAT(refusal(with("score", R"(0.5,"mask":)" + std::string(other))),
+                HasSubstr(R"(object 3: mask is neither "rough" nor "depth")"));
+  }
+}
+
 TEST(ParseDetectionsLine, TakesAFrameWithoutObjects) {
   EXPECT_TRUE(parse(R"({"stamp":"7","objects":[]})").objects.empty());
   EXPECT_TRUE(parse("{\"stamp\":\"7\",\"objects\":[]}\r").objects.empty());

@@ -27,6 +27,9 @@ constexpr std::size_t kLayers = 110;  // up to 15 m
 constexpr double kWorthwhile = 0.5;   // least size of a nearer layer, as a share of the strongest
 constexpr float kThickness_m = 0.7F;  // greatest extent of an object from its layer
 constexpr float kStepWay = 12;        // path length of a depth step beyond noise, in cells
+constexpr double kRoughReach = 0.05;  // of a rough mask around its box, as a share of its side
+constexpr float kDoubtWay = 3;  // path length of a cell that a rough mask gives to the other side
+constexpr double kLeastMeasured = 0.2;  // share of a rough mask with depth, else it stays
 
 enum class Side : std::uint8_t { kUndecided, kObject, kOther };
 
@@ -38,7 +41,9 @@ template <class Values>
 /// The box and its surroundings in cells of several pixels, each with the depth of its middle.
 class CellGrid {
  public:
-  CellGrid(const DepthImage& depth, const ObjectMask& mask, const PixelBox& box) : box_(box) {
+  /// `rough_id` is the object's id in `mask`; 0 if only its box is known.
+  CellGrid(const DepthImage& depth, const ObjectMask& mask, const PixelBox& box, int rough_id)
+      : box_(box), is_rough_(rough_id != 0) {
     const double longer = std::max(box.width(), box.height());
     stride_ = std::max(2, static_cast<int>(std::ceil(longer / kMostCells)));
     const double x = std::max<double>(2 * stride_, kMargin * box.width());
@@ -48,9 +53,12 @@ class CellGrid {
     rows_ = area_.height / stride_;
     depth_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
     side_.assign(depth_.size(), Side::kUndecided);
+    own_.assign(depth_.size(), 0);
     for (int i = 0; i < size(); ++i) {
       const cv::Point p = pixel(i);
-      const bool taken = !mask.mat.empty() && mask.mat(p) != 0;
+      const int id = mask.mat.empty() ? 0 : mask.mat(p);
+      const bool taken = id != 0 && id != rough_id;
+      at(own_, i) = id != 0 && id == rough_id ? 1 : 0;
       const float z = depth.mat(p);
       at(depth_, i) = std::isfinite(z) && z > 0 && !taken ? z : 0.0F;
     }
@@ -98,13 +106,23 @@ class CellGrid {
         const float z = at(depth_, neighbour);
         if (z <= 0) return;
         const float steps = std::max(0.0F, std::abs(z - at(depth_, i)) / noise(z) - 1);
-        const float longer = length + 1 + kStepWay * std::min(steps, 10.0F);
+        const float longer = length + 1 + kStepWay * std::min(steps, 10.0F) + doubt(i, neighbour);
         if (longer >= at(way, neighbour)) return;
         at(way, neighbour) = longer;
         at(side_, neighbour) = at(side_, i);
         next.emplace(longer, neighbour);
       });
     }
+  }
+
+  /// The share of the rough mask's cells that have depth.
+  [[nodiscard]] double measured_share() const {
+    int own = 0, measured = 0;
+    for (int i = 0; i < size(); ++i) {
+      own += at(own_, i);
+      measured += at(own_, i) != 0 && at(depth_, i) > 0 ? 1 : 0;
+    }
+    return own == 0 ? 0 : static_cast<double>(measured) / own;
   }
 
   [[nodiscard]] bool is_object(int i) const { return at(side_, i) == Side::kObject; }
@@ -132,6 +150,7 @@ class CellGrid {
     return std::hypot(x, y);
   }
   [[nodiscard]] double weight(int i) const {
+    if (is_rough_) return at(own_, i);
     const double off = off_middle(i);
     return off < 1 ? std::exp(-2 * off * off) : 0;
   }
@@ -140,13 +159,23 @@ class CellGrid {
     return p.x >= box_.x0 && p.x < box_.x1 && p.y >= box_.y0 && p.y < box_.y1;
   }
 
+  /// The path length that a rough mask adds to a step of the side of `from`.
+  [[nodiscard]] float doubt(int from, int to) const {
+    const bool as_mask = (at(side_, from) == Side::kObject) == (at(own_, to) != 0);
+    return is_rough_ && !as_mask ? kDoubtWay : 0.0F;
+  }
+  /// Whether a cell at the object's layer certainly belongs to it.
+  [[nodiscard]] bool is_core(int i) const {
+    return is_rough_ ? at(own_, i) != 0 : off_middle(i) < 0.6;
+  }
+
   void mark_certain(float layer_m) {
     for (int i = 0; i < size(); ++i) {
       const float z = at(depth_, i);
       if (z <= 0) continue;
       const float from_layer = std::abs(z - layer_m);
       if (!in_box(i) || from_layer > kThickness_m) at(side_, i) = Side::kOther;
-      if (off_middle(i) < 0.6 && from_layer < 2 * static_cast<float>(kLayerWidth) * layer_m) {
+      if (is_core(i) && from_layer < 2 * static_cast<float>(kLayerWidth) * layer_m) {
         at(side_, i) = Side::kObject;
       }
     }
@@ -189,12 +218,60 @@ class CellGrid {
   }
 
   PixelBox box_;
+  bool is_rough_;
   int stride_ = 2;
   cv::Rect area_;
   int columns_ = 0, rows_ = 0;
   std::vector<float> depth_;
   std::vector<Side> side_;
+  std::vector<std::uint8_t> own_;  // 1 in the rough mask
 };
+
+/// The pixels of `area` that belong to the object by the grid; those without depth by the rough
+/// mask if there is one.
+PixelPatch pixels_of_object(const CellGrid& grid,
+                            const DepthImage& depth,
+                            const ObjectMask& mask,
+                            cv::Rect area,
+                            int rough_id) {
+  PixelPatch patch{area, cv::Mat1b(area.size(), std::uint8_t{0})};
+  const auto id_at = [&](int y, int x) { return mask.mat.empty() ? 0 : int{mask.mat(y, x)}; };
+  // Cells leave out some of the last rows and columns.
+  if (rough_id != 0) cv::Mat1b((mask.mat(area) == rough_id) & 1).copyTo(patch.pixels);
+  for (int i = 0; i < grid.size(); ++i) {
+    const cv::Rect cell = grid.cell(i) & area;
+    const float reach = 0.05F + 0.02F * grid.depth(i);
+    for (int y = cell.y; y < cell.y + cell.height; ++y) {
+      for (int x = cell.x; x < cell.x + cell.width; ++x) {
+        const float z = depth.mat(y, x);
+        const int id = id_at(y, x);
+        const bool own = rough_id != 0 && id == rough_id;
+        const bool near = own || std::abs(z - grid.depth(i)) < reach;
+        const bool undecided = !(grid.depth(i) > 0);
+        const bool joins = z > 0 ? (grid.is_object(i) && near) || (undecided && own)
+                                 : own || (rough_id == 0 && grid.is_object(i));
+        patch.pixels(y - area.y, x - area.x) = (id == 0 || own) && joins ? 1 : 0;
+      }
+    }
+  }
+  return patch;
+}
+
+PixelBox widened(const PixelBox& box, double share) {
+  const double x = share * box.width(), y = share * box.height();
+  return {box.x0 - x, box.y0 - y, box.x1 + x, box.y1 + y};
+}
+
+/// Descending score; rough masks before boxes alone, which get what these leave.
+std::vector<std::size_t> order_of_completion(const FrameDetections& detections) {
+  std::vector<std::size_t> order(detections.objects.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t i) {
+    const DetectedObject& object = detections.objects[i];
+    return std::pair(object.pixel_source == PixelSource::kRoughNetwork, object.score);
+  });
+  return order;
+}
 
 }  // namespace
 
@@ -205,25 +282,25 @@ PixelPatch mask_from_depth(const DepthImage& depth,
   STILLMAP_CHECK(mask.mat.empty() || mask.mat.size() == depth.mat.size());
   const cv::Rect pixels = pixels_of(box, depth.mat.size());
   if (pixels.width < kLeastSide_px || pixels.height < kLeastSide_px) return {};
-  CellGrid grid(depth, mask, box);
+  CellGrid grid(depth, mask, box, 0);
   const std::optional<float> layer = grid.layer(expected_depth_m);
   if (!layer) return {};
   grid.divide(*layer);
-  PixelPatch patch{pixels, cv::Mat1b(pixels.size(), std::uint8_t{0})};
-  for (int i = 0; i < grid.size(); ++i) {
-    const cv::Rect cell = grid.cell(i) & pixels;
-    if (!grid.is_object(i) || cell.empty()) continue;
-    const float reach = 0.05F + 0.02F * grid.depth(i);
-    for (int y = cell.y; y < cell.y + cell.height; ++y) {
-      for (int x = cell.x; x < cell.x + cell.width; ++x) {
-        const float z = depth.mat(y, x);
-        const bool taken = !mask.mat.empty() && mask.mat(y, x) != 0;
-        const bool joins = !taken && (!(z > 0) || std::abs(z - grid.depth(i)) < reach);
-        patch.pixels(y - pixels.y, x - pixels.x) = joins ? 1 : 0;
-      }
-    }
-  }
-  return patch;
+  return pixels_of_object(grid, depth, mask, pixels, 0);
+}
+
+PixelPatch mask_refined_by_depth(const DepthImage& depth,
+                                 const ObjectMask& mask,
+                                 const DetectedObject& object) {
+  STILLMAP_CHECK(mask.mat.size() == depth.mat.size());
+  const PixelBox box = widened(object.box, kRoughReach);
+  const cv::Rect pixels = pixels_of(box, depth.mat.size());
+  if (pixels.width < kLeastSide_px || pixels.height < kLeastSide_px) return {};
+  CellGrid grid(depth, mask, box, object.id);
+  const std::optional<float> layer = grid.layer(std::nullopt);
+  if (!layer || grid.measured_share() < kLeastMeasured) return {};
+  grid.divide(*layer);
+  return pixels_of_object(grid, depth, mask, pixels, object.id);
 }
 
 std::vector<bool> complete_masks(FrameDetections& detections,
@@ -231,17 +308,16 @@ std::vector<bool> complete_masks(FrameDetections& detections,
                                  const std::vector<std::optional<float>>& expected_depths_m) {
   STILLMAP_CHECK(expected_depths_m.size() == detections.objects.size());
   const MaskAreas areas = mask_areas(detections.mask);
-  std::vector<std::size_t> order(detections.objects.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(
-      order, std::ranges::greater{}, [&](std::size_t i) { return detections.objects[i].score; });
   std::vector<bool> completed(detections.objects.size(), false);
   bool own = false;  // the mask's pixels may be shared with the caller
-  for (const std::size_t i : order) {
-    const DetectedObject& object = detections.objects[i];
-    if (areas[static_cast<std::size_t>(object.id)].pixels > 0) continue;
+  for (const std::size_t i : order_of_completion(detections)) {
+    DetectedObject& object = detections.objects[i];
+    const bool has_pixels = areas[static_cast<std::size_t>(object.id)].pixels > 0;
+    if (has_pixels && object.pixel_source != PixelSource::kRoughNetwork) continue;
     const PixelPatch patch =
-        mask_from_depth(depth, detections.mask, object.box, expected_depths_m[i]);
+        has_pixels ? mask_refined_by_depth(depth, detections.mask, object)
+                   : mask_from_depth(depth, detections.mask, object.box, expected_depths_m[i]);
+    object.pixel_source = has_pixels ? PixelSource::kNetwork : object.pixel_source;
     if (patch.area.empty() || cv::countNonZero(patch.pixels) == 0) continue;
     if (!own) {
       detections.mask =
@@ -249,8 +325,10 @@ std::vector<bool> complete_masks(FrameDetections& detections,
                                                  : cv::Mat1b(detections.mask.mat.clone()));
       own = true;
     }
+    if (has_pixels) detections.mask.mat.setTo(0, detections.mask.mat == object.id);
     paint(detections.mask, patch, static_cast<std::uint8_t>(object.id));
-    completed[i] = true;
+    completed[i] = !has_pixels;
+    if (!has_pixels) object.pixel_source = PixelSource::kDepth;
   }
   return completed;
 }

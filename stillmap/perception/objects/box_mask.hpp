@@ -24,8 +24,20 @@ namespace stillmap {
                                          const PixelBox& box,
                                          std::optional<float> expected_depth_m = std::nullopt);
 
-/// Gives every object without pixels those of mask_from_depth(), by descending score.
-/// `expected_depths_m` has one value per object. Returns, per object, whether its mask is by depth.
+/// The pixels, by depth, of an object whose mask is rough (PixelSource::kRoughNetwork).
+///
+/// As mask_from_depth(), but the object's layer is the strongest in its mask, the mask's pixels at
+/// that layer certainly belong to the object, and paths are longer where they contradict the mask.
+/// So the background in the mask leaves it, and what the mask lacks of the object joins. Pixels
+/// without depth stay as they are. Returns an empty patch where little of the mask has depth.
+[[nodiscard]] PixelPatch mask_refined_by_depth(const DepthImage& depth,
+                                               const ObjectMask& mask,
+                                               const DetectedObject& object);
+
+/// Gives every object without pixels those of mask_from_depth(), and every rough mask those of
+/// mask_refined_by_depth() before, both by descending score. `expected_depths_m` has one value per
+/// object. Sets the origins of the masks. Returns, per object, whether it had none and has one by
+/// depth now.
 std::vector<bool> complete_masks(FrameDetections& detections,
                                  const DepthImage& depth,
                                  const std::vector<std::optional<float>>& expected_depths_m);

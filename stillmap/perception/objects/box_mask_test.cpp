@@ -86,6 +86,56 @@ TEST(MaskFromDepth, IsEmptyWithoutDepthOrForABoxTooSmall) {
   EXPECT_EQ(overlap(mask_from_depth(broken, {}, kBox), kThing), 0);
 }
 
+DetectedObject with_rough_mask(int id, float score) {
+  return {id, "person", score, kBox, PixelSource::kRoughNetwork};
+}
+
+double overlap_of_refined(const DepthImage& depth, cv::Rect rough) {
+  ObjectMask mask(cv::Mat1b(480, 640, std::uint8_t{0}));
+  mask.mat(rough).setTo(5);
+  return overlap(mask_refined_by_depth(depth, mask, with_rough_mask(5, 0.9F)), kThing);
+}
+
+// The network sees the whole box as a person: the wall beside the thing leaves the mask.
+TEST(MaskRefinedByDepth, LosesTheBackground) {
+  const DepthImage depth = room_with_thing();
+  EXPECT_GT(overlap_of_refined(depth, {245, 140, 130, 165}), 0.9);
+}
+
+// The network misses the upper half, a back in a shirt of the wall's color.
+TEST(MaskRefinedByDepth, GainsWhatTheNetworkMissed) {
+  const DepthImage depth = room_with_thing();
+  EXPECT_GT(overlap_of_refined(depth, {255, 230, 110, 60}), 0.85);  // the rough mask has 0.37
+}
+
+TEST(MaskRefinedByDepth, KeepsPixelsWithoutDepthAndIsEmptyWithoutAny) {
+  DepthImage depth = room_with_thing();
+  const cv::Rect unmeasured(270, 170, 40, 30);
+  cv::Mat1f(depth.mat, unmeasured).setTo(0.0F);
+  EXPECT_GT(overlap_of_refined(depth, kThing), 0.95);
+  depth.mat.setTo(0.0F);
+  EXPECT_EQ(overlap_of_refined(depth, kThing), 0);
+}
+
+// A person's mask covers a part of the chair before the person: the chair, a box alone, gets it.
+TEST(CompleteMasks, RefinedMasksLeavePixelsToBoxesAlone) {
+  DepthImage depth = room_with_thing();
+  const cv::Rect chair(210, 230, 90, 70);
+  cv::Mat1f(depth.mat, chair).setTo(1.4F);
+  FrameDetections found;
+  found.objects = {{1, "chair", 0.8F, {208, 228, 302, 302}}, with_rough_mask(2, 0.5F)};
+  found.mask = ObjectMask(cv::Mat1b(480, 640, std::uint8_t{0}));
+  found.mask.mat(kThing).setTo(2);
+  (void)complete_masks(found, depth, {std::nullopt, std::nullopt});
+  EXPECT_GT(cv::countNonZero(found.mask.mat(chair) == 1), 0.8 * chair.area());
+  EXPECT_GT(cv::countNonZero(found.mask.mat == 2), 0.8 * (kThing.area() - (kThing & chair).area()));
+  EXPECT_EQ(found.objects[0].pixel_source, PixelSource::kDepth);
+  EXPECT_EQ(found.objects[1].pixel_source, PixelSource::kNetwork) << "it is not refined again";
+  const cv::Mat1b before = found.mask.mat;
+  (void)complete_masks(found, depth, {std::nullopt, std::nullopt});
+  EXPECT_EQ(cv::countNonZero(before != found.mask.mat), 0);
+}
+
 TEST(CompleteMasks, GivesPixelsToBoxesAloneTheSurestFirst) {
   FrameDetections found;
   const PixelBox other{20, 20, 80, 80};

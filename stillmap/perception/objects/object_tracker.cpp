@@ -118,6 +118,10 @@ std::vector<TrackId> ObjectTracker::associate(const Observation& frame) {
 std::vector<MaskSource> ObjectTracker::complete(Observation& frame,
                                                 const std::vector<TrackId>& tracks) const {
   std::vector<MaskSource> sources(tracks.size(), MaskSource::kDetected);
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    const bool by_depth = frame.detections.objects[i].pixel_source == PixelSource::kDepth;
+    if (by_depth) sources[i] = MaskSource::kDepth;  // as read from a folder
+  }
   if (!config_.masks_from_depth || frame.depth.mat.empty()) return sources;
   std::vector<std::optional<float>> expected;
   for (const TrackId id : tracks) {

@@ -49,7 +49,8 @@ FrameDetections assemble_detections(const Stamp& stamp,
     frame.objects.push_back({static_cast<int>(kept.size()),
                              coco_name(object.class_name),
                              std::clamp(object.score, 0.0F, 1.0F),
-                             *box});
+                             *box,
+                             object.rough ? PixelSource::kRoughNetwork : PixelSource::kNetwork});
   }
   cv::Mat1b ids(image, 0);
   for (std::size_t i = kept.size(); i-- > 0;) paint(*kept[i], static_cast<int>(i) + 1, ids);

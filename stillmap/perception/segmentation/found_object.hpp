@@ -15,9 +15,10 @@ namespace stillmap {
 struct FoundObject {
   std::string class_name;
   float score = 0;
-  PixelBox box;     ///< pixels of the image
-  cv::Rect region;  ///< the area of the mask in the image
-  cv::Mat1b mask;   ///< of the size of the region, not 0 on the object; empty: no mask
+  PixelBox box;        ///< pixels of the image
+  cv::Rect region;     ///< the area of the mask in the image
+  cv::Mat1b mask;      ///< of the size of the region, not 0 on the object; empty: no mask
+  bool rough = false;  ///< whether the mask is to be refined by depth (PixelSource::kRoughNetwork)
 };
 
 /// Candidates (in pixels of the image) as objects without masks, with the names of their classes.

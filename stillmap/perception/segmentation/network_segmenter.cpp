@@ -35,12 +35,21 @@ constexpr float kCenterNetScore = 0.28F;
 // A missed person does more harm than a false one, and a false one gets no mask.
 constexpr float kNanoDetPersonScore = 0.2F;
 
+// People who fill much of the image, mostly cut off by it, have low scores; false boxes of that
+// size are rare. Most others of so low a score lie on a person who has a better box.
+constexpr float kNanoDetLargePersonScore = 0.12F;
+constexpr double kLargeShare = 0.1;  // of the image
+constexpr double kMostShared = 0.5;  // with a better box, of the smaller of the two
+
 // Size of the crop relative to a person's box; size of the area in which the mask is kept, relative
 // to the box; least share of that area that the mask of a person covers. Chosen on photographs and
 // rendered offices.
 constexpr double kCropScale = 1.0;
 constexpr double kBoxScale = 1.1;
 constexpr double kLeastShare = 0.1;
+
+// The detector is trusted without a mask: backs and trunks before the camera often have none.
+constexpr float kSurePersonScore = 0.35F;
 
 cv::Size plane_size(const TensorShape& input, bool channels_last) {
   return {static_cast<int>(input[channels_last ? 2 : 3]),
@@ -96,6 +105,29 @@ int stride_of(std::int64_t cells, cv::Size input) {
 bool is_person(const std::vector<std::string>& names, int label) {
   const auto index = static_cast<std::size_t>(label);
   return index < names.size() && coco_name(names[index]) == "person";
+}
+
+// The share of the smaller of two boxes that lies in the other.
+double shared_part(const PixelBox& a, const PixelBox& b) {
+  const double width = std::min(a.x1, b.x1) - std::max(a.x0, b.x0);
+  const double height = std::min(a.y1, b.y1) - std::max(a.y0, b.y0);
+  return width > 0 && height > 0 ? width * height / std::min(a.area(), b.area()) : 0;
+}
+
+// Drops people of the lowest scores whose box shares much with that of a better one. Sorted by
+// descending score.
+void drop_repeated_people(std::vector<Candidate>& candidates,
+                          const std::vector<std::string>& names) {
+  std::vector<Candidate> kept;
+  for (const Candidate& candidate : candidates) {
+    const bool weak = candidate.score < kNanoDetPersonScore && is_person(names, candidate.label);
+    const bool repeats = weak && std::ranges::any_of(kept, [&](const Candidate& better) {
+                           return better.label == candidate.label &&
+                                  shared_part(better.box, candidate.box) > kMostShared;
+                         });
+    if (!repeats) kept.push_back(candidate);
+  }
+  candidates = std::move(kept);
 }
 
 PixelBox scaled(const PixelBox& box, double scale) {
@@ -189,9 +221,12 @@ std::vector<Candidate> ImageNetwork::decode_nanodet_levels(
                       scores.view(),
                       outputs.at(export_.outputs[i + 1]).view()});
   }
-  std::vector<Candidate> candidates = decode_nanodet(levels, placement_.input, kNanoDetPersonScore);
+  std::vector<Candidate> candidates =
+      decode_nanodet(levels, placement_.input, kNanoDetLargePersonScore);
   std::erase_if(candidates, [&](const Candidate& candidate) {
-    return candidate.score < kNanoDetScore && !is_person(export_.names, candidate.label);
+    if (!is_person(export_.names, candidate.label)) return candidate.score < kNanoDetScore;
+    const bool large = placement_.to_image(candidate.box).area() >= kLargeShare * image_.area();
+    return candidate.score < (large ? kNanoDetLargePersonScore : kNanoDetPersonScore);
   });
   return candidates;
 }
@@ -210,6 +245,7 @@ std::vector<FoundObject> ImageNetwork::decode_boxes(const std::vector<Tensor>& o
   }
   candidates = suppress_overlaps(
       std::move(candidates), export_.kind == ExportKind::kDetr ? kMaxOverlapOfFinal : kMaxOverlap);
+  if (export_.kind == ExportKind::kNanoDet) drop_repeated_people(candidates, export_.names);
   return name_candidates(to_image(std::move(candidates), placement_), export_.names);
 }
 
@@ -254,8 +290,12 @@ std::optional<FoundObject> PersonSegmenter::with_mask(FoundObject person,
   if (outputs.empty()) throw Error("a person's mask: the network has no output");
   person.box = scaled(*box, kBoxScale);
   person = with_matting(std::move(person), outputs[0].view(), threshold_, placement, image_);
-  if (cv::countNonZero(person.mask) < kLeastShare * person.region.area()) return std::nullopt;
   person.box = *box;
+  person.rough = true;
+  if (cv::countNonZero(person.mask) >= kLeastShare * person.region.area()) return person;
+  if (person.score < kSurePersonScore) return std::nullopt;
+  person.mask.release();
+  person.rough = false;
   return person;
 }
 

@@ -141,6 +141,7 @@ TEST(PersonSegmenter, MaskIsOfTheMattingNetwork) {
   const FrameDetections found = person_segmenter(0.9F, 0).segment(person_at(place), kStamp);
   ASSERT_EQ(found.objects.size(), 1U);
   EXPECT_EQ(found.objects[0].class_name, "person");
+  EXPECT_EQ(found.objects[0].pixel_source, PixelSource::kRoughNetwork);
   EXPECT_EQ(found.objects[0].box, (PixelBox{0, 0, 64, 48}));
   cv::Mat1b expected = cv::Mat1b::zeros(kImage);
   expected(place).setTo(1);
@@ -157,9 +158,14 @@ TEST(PersonSegmenter, OtherThingsAreBoxes) {
   EXPECT_TRUE(found.mask.mat.empty());
 }
 
-TEST(PersonSegmenter, APersonWithoutPixelsIsNone) {
-  EXPECT_THAT(person_segmenter(0.9F, 0).segment(person_at({0, 0, 2, 2}), kStamp).objects,
-              testing::IsEmpty());
+// Backs before the camera often have no pixels, although the detector is sure of them.
+TEST(PersonSegmenter, APersonWithoutPixelsIsABoxWhereTheScoreIsHighAndElseNone) {
+  const ColorImage nobody = person_at({0, 0, 2, 2});
+  const FrameDetections sure = person_segmenter(0.9F, 0).segment(nobody, kStamp);
+  ASSERT_EQ(sure.objects.size(), 1U);
+  EXPECT_EQ(sure.objects[0].pixel_source, PixelSource::kNetwork);
+  EXPECT_TRUE(sure.mask.mat.empty());
+  EXPECT_THAT(person_segmenter(0.25F, 0).segment(nobody, kStamp).objects, testing::IsEmpty());
 }
 
 TEST(PersonSegmenter, WeakPeopleCountOtherThingsDoNot) {
