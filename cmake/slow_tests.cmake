@@ -3,7 +3,7 @@
 # more, or belong to those; "*" for all. They have the label slow, all others fast: less than a minute
 # of processor time together (`make test-fast`).
 set(stillmap_slow_tests_config LoadYaml.*)
-set(stillmap_slow_tests_dense FreeSpace.* System.* ViewChoice.* VoxelGrid.AgreesWith*)
+set(stillmap_slow_tests_dense FreeSpace.* System.* VacatedPlaces.* ViewChoice.* VoxelGrid.AgreesWith*)
 set(stillmap_slow_tests_devices OpenNiDevice.*)
 set(stillmap_slow_tests_detections DetectionsFolder.Re*)
 set(stillmap_slow_tests_eval SeeThrough.* StitchedMap.*)
