@@ -9,6 +9,7 @@
 #include "stillmap/core/error.hpp"
 #include "stillmap/dense/point_batches.hpp"
 #include "stillmap/dense/point_groups.hpp"
+#include "stillmap/dense/selected_points.hpp"
 
 namespace stillmap {
 namespace {
@@ -178,15 +179,8 @@ PointCloud without_moved(const PointCloud& map,
                          std::size_t threads) {
   const PointGroups groups = group_points(map.positions, config.cell_m);
   const std::vector<Sightings> seen = sightings(groups.means, ranges, camera, config, threads);
-  PointCloud kept;
-  for (std::size_t i = 0; i < map.size(); ++i) {
-    if (!stays(seen[groups.group_of[i]], config)) continue;
-    kept.positions.push_back(map.positions[i]);
-    kept.colors.push_back(map.colors[i]);
-    if (!map.labels.empty()) kept.labels.push_back(map.labels[i]);
-    if (!map.normals.empty()) kept.normals.push_back(map.normals[i]);
-  }
-  return kept;
+  return selected_points(map,
+                         [&](std::size_t i) { return stays(seen[groups.group_of[i]], config); });
 }
 
 }  // namespace stillmap

@@ -52,12 +52,16 @@ std::vector<Slice> slices(std::span<const PosedCloud> clouds,
   return all;
 }
 
-PointCloud cloud_in(const Slice& slice, std::span<const PosedCloud> clouds, double voxel_size_m) {
+PointCloud cloud_in(const Slice& slice,
+                    std::span<const PosedCloud> clouds,
+                    double voxel_size_m,
+                    std::span<const CubeMoves> moves) {
   VoxelGrid grid(voxel_size_m);
   for (const PosedCloud& posed : clouds) {
     const CompactCloud& cloud = *posed.cloud;
     for (std::size_t i = 0; i < cloud.size(); ++i) {
-      const Eigen::Vector3f p_world = to_world(posed, i);
+      Eigen::Vector3f p_world = to_world(posed, i);
+      for (const CubeMoves& move : moves) p_world += move.at(p_world);
       if (!slice.contains(place(p_world, voxel_size_m))) continue;
       const std::uint8_t label = cloud.labels.empty() ? std::uint8_t{0} : cloud.labels[i];
       grid.add(p_world, cloud.colors[i], label);
@@ -79,7 +83,8 @@ void append(PointCloud& all, const PointCloud& part) {
 
 PointCloud global_cloud(std::span<const PosedCloud> clouds,
                         double voxel_size_m,
-                        std::size_t threads) {
+                        std::size_t threads,
+                        std::span<const CubeMoves> moves) {
   STILLMAP_CHECK(threads > 0);
   for (const PosedCloud& posed : clouds) {
     STILLMAP_CHECK(posed.cloud != nullptr);
@@ -92,7 +97,7 @@ PointCloud global_cloud(std::span<const PosedCloud> clouds,
   const std::vector<Slice> all = slices(clouds, voxel_size_m, threads);
   std::vector<PointCloud> parts(all.size());
   in_parallel(all.size(),
-              [&](std::size_t k) { parts[k] = cloud_in(all[k], clouds, voxel_size_m); });
+              [&](std::size_t k) { parts[k] = cloud_in(all[k], clouds, voxel_size_m, moves); });
   PointCloud cloud = std::move(parts.front());
   for (std::size_t k = 1; k < parts.size(); ++k) append(cloud, parts[k]);
   return cloud;

@@ -53,16 +53,14 @@ PointCloud static_map(std::span<const PosedView> views,
     clouds.push_back({posed.T_world_camera, &posed.view->cloud});
     ranges.push_back({posed.T_world_camera, &posed.view->range});
   }
-  PointCloud all = global_cloud(clouds, config.voxel_size_m, threads);
-  if (config.fusion.rule == "surface") {
-    all = fused_surface(std::move(all),
-                        clouds,
-                        camera,
-                        cell_side(camera.width_px, config.local),
-                        config.voxel_size_m,
-                        config.fusion.surface,
-                        threads);
-  }
+  const PointCloud all = config.fusion.rule == "surface"
+                             ? fused_surface(clouds,
+                                             camera,
+                                             cell_side(camera.width_px, config.local),
+                                             config.voxel_size_m,
+                                             config.fusion.surface,
+                                             threads)
+                             : global_cloud(clouds, config.voxel_size_m, threads);
   if (config.free_space != "on") return all;
   return without_moved(all, ranges, camera, config.free, threads);
 }

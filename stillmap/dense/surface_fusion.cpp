@@ -17,6 +17,8 @@
 namespace stillmap {
 namespace {
 
+constexpr float kAgree = 0.95F;  // length of the mean of normals that are those of one plane
+
 struct FusionView {
   BatchProjector projector;
   Eigen::Vector3f center;  // of the camera, in the world
@@ -41,7 +43,6 @@ class Measurement {
         gate_(static_cast<float>(config.gate_m)),
         sigmas_(static_cast<float>(config.gate_sigmas)) {}
 
-  template <bool kWithNormals>
   void add(const FusionView& view,
            const ProjectedBatch& at,
            std::span<const Eigen::Vector3f> points,
@@ -73,7 +74,7 @@ class Measurement {
       Evidence& e = evidence[n];
       e.weight += weight;
       e.move += (weight * off / z) * ray;
-      if constexpr (kWithNormals) e.normal += weight * normal_of(view, cell, ray / z, inverse);
+      e.normal += weight * normal_of(view, cell, ray / z, inverse);
     }
   }
 
@@ -111,33 +112,52 @@ class Fusion {
     }
   }
 
-  /// Points that share a cube of that edge move together.
-  template <bool kWithNormals>
-  [[nodiscard]] PointCloud moved(PointCloud cloud, double cube_m) const {
-    const PointGroups groups = group_points(cloud.positions, cube_m);
-    const std::vector<Eigen::Vector3f>& points = groups.means;
+  /// The displacements of cubes of that edge, from the means of their points.
+  [[nodiscard]] CubeMoves moves_of(std::span<const Eigen::Vector3f> means, double cube_m) const {
+    CubeMoves moves(cube_m);
+    const PointGroups cubes = group_points(means, cube_m);
+    const std::vector<Evidence> evidence = ask(cubes.means);
+    for (std::size_t i = 0; i < evidence.size(); ++i) {
+      const Evidence& e = evidence[i];
+      if (e.weight <= 0) continue;
+      CubeMoves::Move move{cubes.means[i], e.move / e.weight};
+      if (e.normal.norm() > kAgree * e.weight) move.normal = e.normal.normalized();
+      moves.add(move);
+    }
+    return moves;
+  }
+
+  /// `cloud` has one point in each voxel.
+  [[nodiscard]] PointCloud moved(PointCloud cloud, double voxel_size_m) const {
+    const PointGroups voxels = group_points(cloud.positions, voxel_size_m);
+    const std::vector<Evidence> evidence = ask(voxels.means);
+    cloud.normals.assign(cloud.size(), Eigen::Vector3f::Zero());
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      const Evidence& e = evidence[voxels.group_of[i]];
+      if (e.weight <= 0) continue;
+      cloud.positions[i] += e.move / e.weight;
+      cloud.normals[i] = e.normal.normalized();
+    }
+    return cloud;
+  }
+
+ private:
+  /// `points` are grouped, so that those of a batch are near each other.
+  [[nodiscard]] std::vector<Evidence> ask(const std::vector<Eigen::Vector3f>& points) const {
     std::vector<Evidence> evidence(points.size());
     for_each_batch(
         points,
         views_,
         threads_,
         [&](const FusionView& view, const ProjectedBatch& at, std::size_t begin, std::size_t size) {
-          measurement_.add<kWithNormals>(view,
-                                         at,
-                                         std::span(points).subspan(begin, size),
-                                         std::span(evidence).subspan(begin, size));
+          measurement_.add(view,
+                           at,
+                           std::span(points).subspan(begin, size),
+                           std::span(evidence).subspan(begin, size));
         });
-    if (kWithNormals) cloud.normals.assign(cloud.size(), Eigen::Vector3f::Zero());
-    for (std::size_t i = 0; i < cloud.size(); ++i) {
-      const Evidence& e = evidence[groups.group_of[i]];
-      if (e.weight <= 0) continue;
-      cloud.positions[i] += e.move / e.weight;
-      if (kWithNormals) cloud.normals[i] = e.normal.normalized();
-    }
-    return cloud;
+    return evidence;
   }
 
- private:
   std::vector<FusionView> views_;
   Measurement measurement_;
   std::size_t threads_;
@@ -175,19 +195,21 @@ PointCloud one_per_voxel(const PointCloud& cloud, double voxel_size_m) {
 
 }  // namespace
 
-PointCloud fused_surface(PointCloud map,
-                         std::span<const PosedCloud> clouds,
+PointCloud fused_surface(std::span<const PosedCloud> clouds,
                          const CameraModel& camera,
                          int cell_px,
                          double voxel_size_m,
                          const SurfaceFusionConfig& config,
                          std::size_t threads) {
   const Fusion fusion(clouds, camera, cell_px, config, threads);
+  const double cube_m = config.cube_voxels * voxel_size_m;
+  std::vector<CubeMoves> moves;
   for (int round = 1; round < config.rounds; ++round) {
-    map = one_per_voxel(fusion.moved<false>(std::move(map), config.cube_voxels * voxel_size_m),
-                        voxel_size_m);
+    moves.push_back(
+        fusion.moves_of(global_cloud(clouds, cube_m, threads, moves).positions, cube_m));
   }
-  return one_per_voxel(fusion.moved<true>(std::move(map), voxel_size_m), voxel_size_m);
+  PointCloud map = global_cloud(clouds, voxel_size_m, threads, moves);
+  return one_per_voxel(fusion.moved(std::move(map), voxel_size_m), voxel_size_m);
 }
 
 }  // namespace stillmap

@@ -29,14 +29,13 @@ struct SurfaceFusionConfig {
                     "",
                     0,
                     100});
-    visit(
-        "cube_voxels",
-        self.cube_voxels,
-        FieldInfo{"edge of the cubes, in voxels, whose points move together in all rounds but the "
-                  "last",
-                  "",
-                  1,
-                  100});
+    visit("cube_voxels",
+          self.cube_voxels,
+          FieldInfo{"edge of the cubes, in voxels, whose points move to one plane in all rounds "
+                    "but the last",
+                    "",
+                    1,
+                    100});
     visit("sigma_m",
           self.sigma_m,
           FieldInfo{
@@ -78,10 +77,13 @@ struct FusionConfig {
   }
 };
 
-/// The points of a map on the surface that all views together measure, thinned to one per voxel,
-/// with normals towards the cameras.
+/// The points of views on the surface that all views together measure, one per voxel, with normals
+/// towards the cameras.
 ///
-/// Each point is looked up in every view. Where a view measures surface near it, the view asks it
+/// The means of small cubes are looked up first, and the points of a cube flattened to the plane
+/// found there, so that far fewer voxels are left; then each voxel's point is looked up.
+///
+/// Each is looked up in every view. Where a view measures surface near it, the view asks it
 /// to move along its ray to that surface. The point moves by the mean of all, weighted by the
 /// inverse variance of the measurement: noise grows with depth squared, and with the slope of the
 /// surface. So the points of many noisy views come to lie on one surface, as the zero of a
@@ -90,8 +92,7 @@ struct FusionConfig {
 ///
 /// `views` have their world poses; their clouds consist of cells of `cell_px` pixels. The same bits
 /// with any number of threads.
-[[nodiscard]] PointCloud fused_surface(PointCloud map,
-                                       std::span<const PosedCloud> views,
+[[nodiscard]] PointCloud fused_surface(std::span<const PosedCloud> views,
                                        const CameraModel& camera,
                                        int cell_px,
                                        double voxel_size_m,

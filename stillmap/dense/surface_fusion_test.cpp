@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stillmap/dense/surface_fusion.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <random>
 #include <set>
 #include <vector>
@@ -29,7 +31,19 @@ struct Plane {
 /// Views of a plane with the noise of a depth camera in each pixel.
 class NoisyViews {
  public:
-  NoisyViews(const Plane& plane, int count, double noise_per_m) {
+  NoisyViews(const Plane& plane, int count, double noise_per_m)
+      : NoisyViews(
+            [plane](const Eigen::Vector3d& from, const Eigen::Vector3d& along) {
+              return (plane.offset_m - plane.normal.dot(from)) / plane.normal.dot(along);
+            },
+            count,
+            noise_per_m) {}
+
+  /// `depth` is that along a ray whose z in the camera is 1.
+  NoisyViews(
+      const std::function<double(const Eigen::Vector3d&, const Eigen::Vector3d&)>& depth_along,
+      int count,
+      double noise_per_m) {
     std::mt19937 random(7);
     std::normal_distribution<double> normal(0.0, 1.0);
     for (int k = 0; k < count; ++k) {
@@ -40,8 +54,7 @@ class NoisyViews {
       for (int v = 0; v < depth.rows; ++v) {
         for (int u = 0; u < depth.cols; ++u) {
           const Eigen::Vector3d ray(rays_(v, u)[0], rays_(v, u)[1], 1);
-          const double z = (plane.offset_m - plane.normal.dot(T_world_camera.translation())) /
-                           plane.normal.dot(T_world_camera.linear() * ray);
+          const double z = depth_along(T_world_camera.translation(), T_world_camera.linear() * ray);
           depth(v, u) = static_cast<float>(z + noise_per_m * z * z * normal(random));
         }
       }
@@ -58,7 +71,7 @@ class NoisyViews {
   [[nodiscard]] PointCloud stitched() const { return global_cloud(posed(), kVoxel_m); }
   [[nodiscard]] PointCloud fused(std::size_t threads = 1) const {
     return fused_surface(
-        stitched(), posed(), camera_, cell_side(camera_.width_px, config_), kVoxel_m, {}, threads);
+        posed(), camera_, cell_side(camera_.width_px, config_), kVoxel_m, {}, threads);
   }
 
  private:
@@ -127,21 +140,46 @@ TEST(SurfaceFusion, ThreadsChangeNothing) {
   EXPECT_EQ(one.colors, three.colors);
 }
 
-TEST(SurfaceFusion, PointsThatNoViewMeasuresStay) {
+TEST(SurfaceFusion, PointsThatNoOtherViewMeasuresStay) {
   const NoisyViews views(kWall, 3, 0);
-  PointCloud far;
-  far.positions = {{0, 0, 2}, {0, 0, -3}};
-  far.colors = {{1, 2, 3}, {4, 5, 6}};
-  const PointCloud fused =
-      fused_surface(far, views.posed(), builtin_camera("tum_fr3"), 4, kVoxel_m, {});
-  ASSERT_EQ(fused.size(), 2U);
-  for (std::size_t i = 0; i < 2; ++i) {
-    const std::size_t k = fused.colors[i] == far.colors[0] ? 0 : 1;
-    EXPECT_EQ(fused.positions[i], far.positions[k]);
-    EXPECT_EQ(fused.colors[i], far.colors[k]);
+  PointCloud lonely;  // two points of one cell, whose surface is therefore unknown
+  lonely.positions = {{0, 0, 1.5F}, {0, 0, 2}};
+  lonely.colors = {{1, 2, 3}, {4, 5, 6}};
+  const CompactCloud view = compact(lonely);
+  std::vector<PosedCloud> posed = views.posed();
+  const std::size_t wall = fused_surface(posed, builtin_camera("tum_fr3"), 4, kVoxel_m, {}).size();
+  posed.push_back({Eigen::Isometry3d::Identity(), &view});
+  const PointCloud fused = fused_surface(posed, builtin_camera("tum_fr3"), 4, kVoxel_m, {});
+  EXPECT_EQ(fused.size(), wall + 2);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const auto found = std::ranges::find(fused.colors, lonely.colors[k]);
+    ASSERT_NE(found, fused.colors.end());
+    const auto i = static_cast<std::size_t>(found - fused.colors.begin());
+    EXPECT_LT((fused.positions[i] - lonely.positions[k]).norm(), 1e-5F);
     EXPECT_EQ(fused.normals[i], Eigen::Vector3f::Zero());
   }
-  EXPECT_TRUE(fused_surface({}, views.posed(), builtin_camera("tum_fr3"), 4, kVoxel_m, {}).empty());
+  EXPECT_TRUE(fused_surface({}, builtin_camera("tum_fr3"), 4, kVoxel_m, {}).empty());
+}
+
+/// A step of 3 cm is lower than the cubes whose points move to one plane.
+TEST(SurfaceFusion, AStepLowerThanACubeStays) {
+  constexpr double kEdge_m = 0.013;
+  const auto depth = [](double x) { return x < kEdge_m ? 1.0 : 1.03; };
+  const NoisyViews views(
+      [&](const Eigen::Vector3d& from, const Eigen::Vector3d& along) {
+        const double low = (1.0 - from.z()) / along.z();
+        return (depth(from.x() + low * along.x()) - from.z()) / along.z();
+      },
+      6,
+      0.0005);
+  std::size_t count = 0, wrong = 0;
+  for (const Eigen::Vector3f& p : views.fused().positions) {
+    if (std::abs(p.x() - kEdge_m) < 0.015) continue;
+    ++count;
+    wrong += std::abs(p.z() - depth(p.x())) > 0.005 ? 1 : 0;
+  }
+  EXPECT_GT(count, 5000U);
+  EXPECT_LT(wrong, count / 100);
 }
 
 }  // namespace

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stillmap/session/session_cloud.hpp"
 
+#include <span>
 #include <vector>
 
 #include "stillmap/config/config_io.hpp"
 #include "stillmap/core/error.hpp"
-#include "stillmap/dense/static_map.hpp"
+#include "stillmap/dense/vacated_places.hpp"
 #include "stillmap/session/session_map.hpp"
 
 namespace stillmap {
@@ -30,7 +31,11 @@ PointCloud session_cloud(const Session& session, SubmapId submap, const std::str
           record.frame);
     }
   }
-  return static_map(posed_views(session, submap), session.camera, config);
+  const CategoryTable categories(settings.dynamics.objects.categories);
+  std::span<const KnownObject> objects;  // in the frame of the main submap
+  if (submap == main_submap(session)) objects = session.objects;
+  return map_without_vacated(
+      posed_views(session, submap), objects, categories, session.camera, config);
 }
 
 }  // namespace stillmap

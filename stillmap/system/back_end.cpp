@@ -25,6 +25,7 @@ BackEnd::BackEnd(const SystemConfig& config,
                  const StageProbe& probe)
     : session_{camera, {}, Map(measure.level_scales()), {}, {}, {}},
       mapping_(config.mapping, camera, measure, {workers.mapping(), probe}),
+      categories_(config.dynamics.objects.categories),
       dense_(resolved_cloud(config), camera, {workers.dense(), probe}),
       loops_(config.loop,
              camera,
@@ -133,14 +134,15 @@ SubmapId BackEnd::result_submap() const {
   return submap.valid() ? submap : main_submap(session_);
 }
 
-RunResult BackEnd::result(std::size_t threads) const {
+RunResult BackEnd::result(const KnownObjects& known, std::size_t threads) const {
   RunResult result;
   const SubmapId submap = result_submap();
   result.trajectory = trajectory_in(session_, submap, first_frame_);
   result.frames_elsewhere = session_.frames.size() - first_frame_ - result.trajectory.size();
   result.keyframes = keyframes_in(session_, submap);
   result.loops = closed_loops_;
-  result.map = dense_.map_of(posed_views(session_, submap), threads);
+  result.map =
+      dense_.map_of(posed_views(session_, submap), known(T_odometry_world_), categories_, threads);
   return result;
 }
 
@@ -152,13 +154,17 @@ BackEnd BackEnd::inline_copy() const {
   return copy;
 }
 
-PointCloud BackEnd::map_snapshot(std::size_t threads) const {
+PointCloud BackEnd::map_snapshot(const KnownObjects& known, std::size_t threads) const {
   BackEnd copy = inline_copy();
   copy.finish();
-  return copy.dense_.map_of(posed_views(copy.session_, copy.result_submap()), threads);
+  return copy.dense_.map_of(posed_views(copy.session_, copy.result_submap()),
+                            known(copy.T_odometry_world_),
+                            categories_,
+                            threads);
 }
 
 PointCloud BackEnd::map_with_poses(std::span<const std::optional<Eigen::Isometry3d>> T_world_frames,
+                                   const KnownObjects& known,
                                    std::size_t threads) const {
   const SubmapId submap = main_submap(session_, first_frame_);
   std::vector<std::optional<Eigen::Isometry3d>> poses(session_.frames.size());
@@ -173,7 +179,16 @@ PointCloud BackEnd::map_with_poses(std::span<const std::optional<Eigen::Isometry
   for (const ViewRecord& view : session_.views) {
     if (poses[view.frame]) posed.push_back({*poses[view.frame], view.view.get()});
   }
-  return dense_.map_of(posed, threads);
+  // Objects move with the first frame since they were last seen.
+  std::vector<KnownObject> objects = known(T_odometry_world_);
+  for (KnownObject& object : objects) {
+    for (std::size_t i = first_frame_; i < poses.size(); ++i) {
+      if (!poses[i] || session_.frames[i].stamp.seconds < object.seen_s) continue;
+      object = moved(std::move(object), *poses[i] * T_world_camera(i).inverse());
+      break;
+    }
+  }
+  return dense_.map_of(posed, objects, categories_, threads);
 }
 
 Session BackEnd::take_session(double readout_s, std::vector<KnownObject> objects) {

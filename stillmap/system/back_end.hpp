@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <utility>
@@ -70,14 +71,18 @@ class BackEnd {
 
   /// Waits for all pending work and adjusts the submap that has most of this run's frames.
   void finish();
+  /// The objects known, in the world frame, of the odometry frame in it.
+  using KnownObjects = std::function<std::vector<KnownObject>(const Eigen::Isometry3d&)>;
   /// Trajectory, key frames and map under the current poses.
-  [[nodiscard]] RunResult result(std::size_t threads) const;
+  [[nodiscard]] RunResult result(const KnownObjects& known, std::size_t threads) const;
   /// The map that finish() and result() would give now. Changes nothing.
-  [[nodiscard]] PointCloud map_snapshot(std::size_t threads) const;
+  [[nodiscard]] PointCloud map_snapshot(const KnownObjects& known, std::size_t threads) const;
   /// The map with the frames of the result's trajectory at other poses, in its order; frames
   /// without a pose add nothing to it.
   [[nodiscard]] PointCloud map_with_poses(
-      std::span<const std::optional<Eigen::Isometry3d>> T_world_frames, std::size_t threads) const;
+      std::span<const std::optional<Eigen::Isometry3d>> T_world_frames,
+      const KnownObjects& known,
+      std::size_t threads) const;
 
   /// The session to be saved, with the objects known. No other member may be called afterwards.
   [[nodiscard]] Session take_session(double readout_s, std::vector<KnownObject> objects);
@@ -96,6 +101,7 @@ class BackEnd {
   std::vector<ClosedLoop> closed_loops_;
 
   MappingStage mapping_;
+  CategoryTable categories_;
   DenseStage dense_;
   LoopStage loops_;
 };

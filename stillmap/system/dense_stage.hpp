@@ -10,7 +10,7 @@
 #include "stillmap/concurrency/stage_probe.hpp"
 #include "stillmap/dense/missed_movers.hpp"
 #include "stillmap/dense/standing_people.hpp"
-#include "stillmap/dense/static_map.hpp"
+#include "stillmap/dense/vacated_places.hpp"
 #include "stillmap/perception/motion/dynamics_stage.hpp"
 #include "stillmap/session/session.hpp"
 
@@ -49,9 +49,13 @@ class DenseStage {
                    const Eigen::Isometry3d& T_odometry_world,
                    std::int64_t frame_number);
 
-  /// The map of the posed views; the result is the same for any number of threads.
-  [[nodiscard]] PointCloud map_of(std::span<const PosedView> views, std::size_t threads) const {
-    return static_map(views, camera_, config_, threads);
+  /// The map of the posed views, without things at places that they have left for others. `objects`
+  /// are in the world frame of the poses. The result is the same for any number of threads.
+  [[nodiscard]] PointCloud map_of(std::span<const PosedView> views,
+                                  std::span<const KnownObject> objects,
+                                  const CategoryTable& categories,
+                                  std::size_t threads) const {
+    return map_without_vacated(views, objects, categories, camera_, config_, threads);
   }
 
   /// Whether views must know free space.

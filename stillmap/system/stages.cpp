@@ -218,6 +218,16 @@ FrameResult System::Stages::remember(const Outcome& outcome) {
   return result;
 }
 
+BackEnd::KnownObjects System::Stages::known_objects() const {
+  return [this](const Eigen::Isometry3d& T_odometry_world) {
+    return dynamics->known_objects(T_odometry_world);
+  };
+}
+
+PointCloud System::Stages::map_snapshot() const {
+  return back_end.map_snapshot(known_objects(), threads);
+}
+
 void System::Stages::notify(const RgbdFrame& frame, const FrameResult& result) {
   for (Observer* observer : observers) {
     observer->on_frame(frame, result);
@@ -225,7 +235,7 @@ void System::Stages::notify(const RgbdFrame& frame, const FrameResult& result) {
   }
   const bool due = snapshot_every_frames > 0 && frame_number % snapshot_every_frames == 0;
   if (!due || observers.empty()) return;
-  const PointCloud map = back_end.map_snapshot(threads);
+  const PointCloud map = map_snapshot();
   for (Observer* observer : observers) observer->on_map(map, frame_number);
 }
 

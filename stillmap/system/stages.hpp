@@ -55,6 +55,9 @@ struct System::Stages {
   void notify(const RgbdFrame& frame, const FrameResult& result);
   void take_objects(FrameObjects objects);
   [[nodiscard]] bool needs_own_objects() const;
+  [[nodiscard]] BackEnd::KnownObjects known_objects() const;
+  /// The map that the run would have if it ended now.
+  [[nodiscard]] PointCloud map_snapshot() const;
 
   SystemConfig config;
   CameraModel camera;

@@ -67,13 +67,13 @@ bool System::needs_own_objects() const {
 }
 
 PointCloud System::map_snapshot() const {
-  return stages_->back_end.map_snapshot(stages_->threads);
+  return stages_->map_snapshot();
 }
 
 RunResult System::finish() {
   Stages& s = *stages_;
   s.back_end.finish();
-  RunResult result = s.back_end.result(s.threads);
+  RunResult result = s.back_end.result(s.known_objects(), s.threads);
   result.lost_at_end = s.lost_frames > 0 || s.frame_number == 0;
   result.united_tracks = s.dynamics->united_tracks();
   for (Observer* observer : s.observers) {
@@ -85,7 +85,8 @@ RunResult System::finish() {
 
 PointCloud System::map_with_poses(
     std::span<const std::optional<Eigen::Isometry3d>> T_world_frames) const {
-  return stages_->back_end.map_with_poses(T_world_frames, stages_->threads);
+  return stages_->back_end.map_with_poses(
+      T_world_frames, stages_->known_objects(), stages_->threads);
 }
 
 void System::load(Session session) {

@@ -2,10 +2,10 @@
 #include "stillmap/perception/objects/object_identities.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <string_view>
 #include <utility>
+
+#include "stillmap/perception/objects/similar_classes.hpp"
 
 namespace stillmap {
 namespace {
@@ -22,22 +22,6 @@ constexpr double kBetweenRuns_s = 3600;    // then a person may be anywhere
 constexpr int kYoung = 5;                  // sightings after which an object is known
 constexpr float kColorGain = 0.1F;
 constexpr float kSureScore = 0.5F;  // below it, most people of the default networks are none
-
-// Classes that networks take for each other.
-constexpr std::array<std::array<std::string_view, 4>, 5> kSimilar = {{
-    {"chair", "couch", "bench", "toilet"},
-    {"dining table", "bed", "desk", ""},
-    {"tv", "laptop", "microwave", ""},
-    {"bottle", "cup", "vase", "wine glass"},
-    {"backpack", "handbag", "suitcase", ""},
-}};
-
-bool similar(std::string_view a, std::string_view b) {
-  return a == b || std::ranges::any_of(kSimilar, [&](const auto& group) {
-           return std::ranges::find(group, a) != group.end() &&
-                  std::ranges::find(group, b) != group.end();
-         });
-}
 
 /// The box around the points between the 5th and the 95th percentile of each coordinate.
 Eigen::AlignedBox3d extent_of(const std::vector<Eigen::Vector3d>& points) {
@@ -126,7 +110,8 @@ std::optional<double> ObjectIdentities::cost_of_return(const Sighting& sighting,
                                                        const KnownObject& object,
                                                        double now_s) const {
   const ObjectLook& look = sighting.look;
-  if (look.surface.size() < kFewestPoints || !similar(sighting.class_name, object.class_name)) {
+  if (look.surface.size() < kFewestPoints ||
+      !similar_classes(sighting.class_name, object.class_name)) {
     return std::nullopt;
   }
   const double distance = gap(sighting, object);
@@ -203,7 +188,8 @@ void ObjectIdentities::unite_by_place(std::vector<Sighting>& sightings) {
     if (sighting.look.surface.size() < kFewestPoints || mobile(later)) continue;
     for (const KnownObject& earlier : known_) {
       if (earlier.track >= later.track) break;
-      if (!similar(earlier.class_name, later.class_name) || earlier.extent.isEmpty()) continue;
+      if (!similar_classes(earlier.class_name, later.class_name) || earlier.extent.isEmpty())
+        continue;
       if (earlier.extent.exteriorDistance(sighting.middle) > 0 ||
           later.extent.exteriorDistance(earlier.extent.center()) > kSamePlace_m) {
         continue;
@@ -244,7 +230,7 @@ std::size_t ObjectIdentities::whole_of(const Sighting& part,
   const bool walks = categories_.of(part.class_name) == Category::kDynamic;
   double least = config_.part_reach_m;
   for (const Sighting& whole : sightings) {
-    if (whole.known == kNone || !similar(whole.class_name, part.class_name)) continue;
+    if (whole.known == kNone || !similar_classes(whole.class_name, part.class_name)) continue;
     const double distance = distance_to(whole.look.surface, part.middle);
     const double whole_m2 = std::max(whole.look.area_m2, known_[whole.known].extent_area_m2);
     const bool small = part.look.area_m2 <= kPartOfWhole * whole_m2;

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "stillmap/core/point_cloud.hpp"
+#include "stillmap/dense/free_space.hpp"
+#include "stillmap/dense/static_map.hpp"
+#include "stillmap/dense/static_view.hpp"
+#include "stillmap/geometry/camera.hpp"
+#include "stillmap/perception/objects/categories.hpp"
+#include "stillmap/perception/objects/object_identities.hpp"
+
+namespace stillmap {
+
+/// The place of a thing that probably stands elsewhere now.
+struct VacatedPlace {
+  std::size_t left = 0;   ///< index of the object at that place
+  std::size_t found = 0;  ///< and of the one that it probably is now
+  double confidence = 0;  ///< 0 to 1
+};
+
+/// The confidence from which a place counts as vacated.
+inline constexpr double kVacatedFrom = 0.6;
+
+/// The places that nobody looked at again after a thing of the same look had come elsewhere.
+///
+/// A thing *came* if views first see through its surface and later ones measure it. It came from
+/// somewhere: from the place of a thing of a similar class that no view has measured since, or from
+/// where no view ever was. How well each of these fits, L, is 1 for equal colors and size and 0 for
+/// colors 0.6 apart (Hellinger); unseen places have 0.25. The confidence that it came from a place
+/// is that place's L over the sum of all. So of two equal chairs, one of which must have been taken,
+/// both stay: the confidence is less than a half. Two equal chairs that both stand stay because
+/// neither came. Pairs are made from the best down, and each object is used once on each side.
+///
+/// `objects` are in the world frame of the poses. Only those that people move count
+/// (Category::kPotentiallyDynamic), found in at least five frames. `views` are in the order of their
+/// time.
+[[nodiscard]] std::vector<VacatedPlace> vacated_places(std::span<const KnownObject> objects,
+                                                       const CategoryTable& categories,
+                                                       std::span<const PosedView> views,
+                                                       const CameraModel& camera,
+                                                       const FreeSpaceConfig& config);
+
+/// The map without what stood at places vacated with at least that confidence: points within 25 cm
+/// of the object's extent, and of no similar object's nearer, that have a similar class as their
+/// label, and unlabelled ones within 2 cm of these, by cubes of that edge: masks lack rims. A map
+/// without labels stays as it is.
+[[nodiscard]] PointCloud without_vacated(const PointCloud& map,
+                                         std::span<const KnownObject> objects,
+                                         std::span<const VacatedPlace> places,
+                                         double confidence = kVacatedFrom);
+
+/// static_map() without_vacated(), where `config` removes what views see through; else static_map().
+[[nodiscard]] PointCloud map_without_vacated(std::span<const PosedView> views,
+                                             std::span<const KnownObject> objects,
+                                             const CategoryTable& categories,
+                                             const CameraModel& camera,
+                                             const CloudConfig& config,
+                                             std::size_t threads = 1);
+
+}  // namespace stillmap
