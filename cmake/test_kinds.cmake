@@ -3,7 +3,7 @@
 # their seconds: FILE=SECONDS. They have the label slow, all others fast: less than a minute of processor time together
 # (`make test-fast`).
 set(stillmap_slow_tests_config yaml_loader=2)
-set(stillmap_slow_tests_dense surface_fusion=2)
+set(stillmap_slow_tests_dense surface_fusion=2 vacated_places=5)
 set(stillmap_slow_tests_detections detections_io=2)
 set(stillmap_slow_tests_devices openni_device=2)
 set(stillmap_slow_tests_eval stitched_map=10)
