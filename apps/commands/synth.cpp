@@ -35,6 +35,8 @@ struct SynthArguments {
   std::string detections = "none";
   std::string assets = "auto";
   double stereo_baseline_m = 0;
+  ImageDelays delays;
+  bool hide_depth_delay = false;
   std::size_t threads = std::max(1U, std::thread::hardware_concurrency());
 };
 
@@ -111,6 +113,8 @@ void render(const SynthArguments& arguments) {
   options.seed = arguments.seed;
   if (arguments.clean) options.sensor = SensorOptions::clean();
   for (const std::string& name : arguments.without) remove_effect(options, name);
+  options.delays = arguments.delays;
+  options.delays.depth_stamps_tell = !arguments.hide_depth_delay;
   const DetectionKind detections = detection_kind(arguments.detections);
   options.assets = chosen_assets(arguments.assets);
 
@@ -125,6 +129,31 @@ void render(const SynthArguments& arguments) {
   print_output(fmt::format(
       "sequence    {} frames of {} in {}\n", options.frames, arguments.size, arguments.out));
   print_output(assets_line(options));
+}
+
+// When the rows of the images are taken.
+void add_time_options(CLI::App& command, const std::shared_ptr<SynthArguments>& arguments) {
+  command
+      .add_option("--readout",
+                  arguments->delays.readout_s,
+                  "a rolling shutter: seconds from the first row of a colour image to the last")
+      ->check(CLI::Range(0.0, 0.1));
+  command
+      .add_option("--depth-readout",
+                  arguments->delays.depth_readout_s,
+                  "the same of a depth image, seconds")
+      ->check(CLI::Range(0.0, 0.1));
+  CLI::Option* delay =
+      command
+          .add_option("--depth-delay",
+                      arguments->delays.depth_delay_s,
+                      "how much later than the colour image each depth image is taken, seconds")
+          ->check(CLI::Range(-0.1, 0.1));
+  command
+      .add_flag("--hide-depth-delay",
+                arguments->hide_depth_delay,
+                "depth images get the stamps of the colour images, as if taken with them")
+      ->needs(delay);
 }
 
 }  // namespace
@@ -161,6 +190,7 @@ void add_synth_command(CLI::App& app, CommandResult&) {
                    "also write mav0/, stereo pairs in the layout of EuRoC: a second camera, this "
                    "many metres to the right")
       ->check(CLI::Range(0.001, 10.0));
+  add_time_options(*command, arguments);
   command
       ->add_option("--assets",
                    arguments->assets,

@@ -85,7 +85,7 @@ bool same_pose(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
 }  // namespace
 
 Exposure Exposure::still(const Eigen::Isometry3d& T_world_camera, WorldState state) {
-  return {T_world_camera, T_world_camera, T_world_camera, state, state};
+  return {{T_world_camera, T_world_camera, T_world_camera}, state, state};
 }
 
 // One scene for all immovable surfaces, in world axes, and one for each movable thing.

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include <Eigen/Geometry>
 
@@ -12,13 +13,25 @@
 
 namespace stillmap {
 
-/// The poses of everything while the shutter is open. Motion is linear from `open` to `close`.
-struct Exposure {
+/// The poses of a camera while the shutter is open. Motion is linear from `open` to `close`.
+struct CameraExposure {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< half way
   Eigen::Isometry3d T_world_camera_open = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d T_world_camera_close = Eigen::Isometry3d::Identity();
-  WorldState open;
-  WorldState close;
+};
+
+/// The poses of everything while the shutter is open.
+struct Exposure : CameraExposure {
+  WorldState open = {};
+  WorldState close = {};
+  /// The camera while each row is exposed: a rolling shutter. Empty: all rows together. The world
+  /// is that of the whole exposure in every row.
+  std::vector<CameraExposure> rows = {};
+
+  /// The camera while row `y` is exposed.
+  [[nodiscard]] const CameraExposure& of_row(int y) const {
+    return rows.empty() ? *this : rows[static_cast<std::size_t>(y)];
+  }
 
   /// An exposure without motion.
   [[nodiscard]] static Exposure still(const Eigen::Isometry3d& T_world_camera, WorldState state);

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <optional>
+#include <vector>
 
 #include "simulation/render/shading.hpp"
 #include "simulation/render/surface_buffer.hpp"
+#include "stillmap/core/error.hpp"
 
 namespace stillmap {
 namespace {
@@ -36,6 +38,21 @@ struct TracedPixel {
   std::array<SurfaceHit, 2> hits;
 };
 
+// The camera while each row is exposed.
+class RowCameras {
+ public:
+  explicit RowCameras(const Exposure& exposure) {
+    if (exposure.rows.empty()) cameras_.emplace_back(exposure);
+    for (const CameraExposure& row : exposure.rows) cameras_.emplace_back(row);
+  }
+  [[nodiscard]] const MovingCamera& of_row(int y) const {
+    return cameras_.size() == 1 ? cameras_.front() : cameras_[static_cast<std::size_t>(y)];
+  }
+
+ private:
+  std::vector<MovingCamera> cameras_;
+};
+
 // The data for colouring the pixels of one image.
 class Painter {
  public:
@@ -43,12 +60,12 @@ class Painter {
           const RayScene& scene,
           const SurfaceBuffer& surfaces,
           const Lighting& lighting,
-          const MovingCamera& camera)
+          const RowCameras& cameras)
       : world_(&world),
         scene_(&scene),
         surfaces_(&surfaces),
         lighting_(&lighting),
-        camera_(&camera) {}
+        cameras_(&cameras) {}
 
   // A pixel that shows one smooth surface.
   [[nodiscard]] Eigen::Vector3f plain(int x, int y, const PixelRays& rays) const {
@@ -56,7 +73,8 @@ class Painter {
     if (!surfel.hit.valid()) return Eigen::Vector3f::Zero();
     const SurfaceTriangle triangle = scene_->triangle(surfel.hit);
     const Material& material = world_->materials[triangle.material];
-    const SurfacePatch patch = PixelSurface(triangle, material, *camera_, rays).whole();
+    const MovingCamera& camera = cameras_->of_row(y);
+    const SurfacePatch patch = PixelSurface(triangle, material, camera, rays).whole();
     return in_light(patch, material, lighting_->openness_at(x, y, surfel));
   }
 
@@ -70,7 +88,7 @@ class Painter {
       if (done[first] || !hits[first].valid()) continue;
       const SurfaceTriangle triangle = scene_->triangle(hits[first]);
       const Material& material = world_->materials[triangle.material];
-      const PixelSurface surface(triangle, material, *camera_, rays);
+      const PixelSurface surface(triangle, material, cameras_->of_row(pixel.at.y), rays);
       // Most often several of the rays show the same triangle, in the same light.
       Eigen::Vector3f albedo = Eigen::Vector3f::Zero();
       std::optional<float> light;
@@ -103,7 +121,7 @@ class Painter {
   const RayScene* scene_;
   const SurfaceBuffer* surfaces_;
   const Lighting* lighting_;
-  const MovingCamera* camera_;
+  const RowCameras* cameras_;
 };
 
 // The pixel's rays with all four quarters at its centre.
@@ -115,7 +133,7 @@ PixelRays without_extent(PixelRays rays) {
 // Traces two opposite quarters of some pixels, alternating between the diagonals. Rays of one
 // moment and of neighbouring pixels are traced together, because their paths are similar.
 std::vector<TracedPixel> trace_quarters(const RayScene& scene,
-                                        const MovingCamera& camera,
+                                        const RowCameras& cameras,
                                         const cv::Mat2f& quarter_rays,
                                         const std::vector<cv::Point>& pixels) {
   std::vector<TracedPixel> traced(pixels.size());
@@ -131,7 +149,7 @@ std::vector<TracedPixel> trace_quarters(const RayScene& scene,
       for (std::size_t i = 0; i < count; ++i) {
         const TracedPixel& pixel = traced[first + i];
         const std::size_t quarter = pixel.quarters[k];
-        const MovingCamera::Moment& moment = camera.quarters[quarter];
+        const MovingCamera::Moment& moment = cameras.of_row(pixel.at.y).quarters[quarter];
         const int dx = static_cast<int>(quarter % 2), dy = static_cast<int>(quarter / 2);
         packet[i].origin = moment.origin;
         packet[i].direction =
@@ -181,13 +199,23 @@ PixelRays Renderer::pixel_rays_at(int x, int y) const {
   return options_.antialiasing ? rays : without_extent(rays);
 }
 
+DepthImage Renderer::depth(const Exposure& exposure) const {
+  const SurfaceBuffer surfaces = trace_surfaces(RayScene(geometry_, exposure), exposure, rays_);
+  DepthImage depth(cv::Mat1f(rays_.size()));
+  for (int y = 0; y < rays_.rows; ++y) {
+    for (int x = 0; x < rays_.cols; ++x) depth.mat(y, x) = surfaces.at(x, y).hit.t;
+  }
+  return depth;
+}
+
 RenderedImage Renderer::render(const Exposure& exposure) const {
+  STILLMAP_CHECK(exposure.rows.empty() || std::ssize(exposure.rows) == rays_.rows);
   const World& world = geometry_.world();
   const RayScene scene(geometry_, exposure);
-  const SurfaceBuffer surfaces = trace_surfaces(scene, exposure.T_world_camera, rays_);
+  const SurfaceBuffer surfaces = trace_surfaces(scene, exposure, rays_);
   const Lighting lighting(scene, world, surfaces, options_.light);
-  const MovingCamera camera(exposure);
-  const Painter painter(world, scene, surfaces, lighting, camera);
+  const RowCameras cameras(exposure);
+  const Painter painter(world, scene, surfaces, lighting, cameras);
 
   RenderedImage image{ColorImage(cv::Mat3b(rays_.size())),
                       DepthImage(cv::Mat1f(rays_.size())),
@@ -207,7 +235,7 @@ RenderedImage Renderer::render(const Exposure& exposure) const {
     }
   }
   const std::vector<cv::Point> pixels = marked_pixels(mixed);
-  for (const TracedPixel& pixel : trace_quarters(scene, camera, quarter_rays_, pixels)) {
+  for (const TracedPixel& pixel : trace_quarters(scene, cameras, quarter_rays_, pixels)) {
     const cv::Point& p = pixel.at;
     set_color(p.x, p.y, painter.mixed(pixel, pixel_rays_at(p.x, p.y)));
   }

@@ -9,7 +9,7 @@ namespace {
 
 using Moment = MovingCamera::Moment;
 
-Moment moment_at(const Exposure& exposure, double time) {
+Moment moment_at(const CameraExposure& exposure, double time) {
   const Eigen::Quaterniond open(exposure.T_world_camera_open.linear());
   const Eigen::Quaterniond close(exposure.T_world_camera_close.linear());
   const Eigen::Vector3d origin = (1 - time) * exposure.T_world_camera_open.translation() +
@@ -68,7 +68,7 @@ Eigen::Vector3f surface_motion(const SurfaceTriangle& t, const Eigen::Vector2f& 
 
 }  // namespace
 
-MovingCamera::MovingCamera(const Exposure& exposure)
+MovingCamera::MovingCamera(const CameraExposure& exposure)
     : middle{exposure.T_world_camera.linear().cast<float>(),
              exposure.T_world_camera.translation().cast<float>(),
              0.5F},

@@ -19,7 +19,7 @@ struct PixelRays {
 /// The position and axes of a camera at the moments of an exposure at which colour is sampled.
 class MovingCamera {
  public:
-  explicit MovingCamera(const Exposure& exposure);
+  explicit MovingCamera(const CameraExposure& exposure);
 
   struct Moment {
     Eigen::Matrix3f R_world_camera;

@@ -29,7 +29,7 @@ Surfel surfel_at(const RayScene& scene, const Ray& ray, const SurfaceHit& hit) {
 // How far the image of a surface moves while the shutter is open.
 float motion_px(const Surfel& surfel,
                 const RayScene& scene,
-                const Exposure& exposure,
+                const CameraExposure& exposure,
                 float focal_length_px) {
   if (!surfel.hit.valid()) return 0.F;
   const SurfaceTriangle t = scene.triangle(surfel.hit);
@@ -58,10 +58,8 @@ bool continuous(const Surfel& a, const Surfel& b) {
 }
 
 SurfaceBuffer trace_surfaces(const RayScene& scene,
-                             const Eigen::Isometry3d& T_world_camera,
+                             const Exposure& exposure,
                              const cv::Mat2f& rays) {
-  const Eigen::Matrix3f R = T_world_camera.linear().cast<float>();
-  const Eigen::Vector3f origin = T_world_camera.translation().cast<float>();
   SurfaceBuffer buffer{rays.cols, rays.rows, std::vector<Surfel>(rays.total())};
   constexpr int kAcross = 4, kDown = 2;  // a packet of rays that lie close together
   static_assert(kAcross * kDown == kRays);
@@ -71,6 +69,9 @@ SurfaceBuffer trace_surfaces(const RayScene& scene,
       std::array<Surfel*, kRays> targets{};
       std::size_t count = 0;
       for (int v = y; v < std::min(y + kDown, rays.rows); ++v) {
+        const Eigen::Isometry3d& T_world_camera = exposure.of_row(v).T_world_camera;
+        const Eigen::Matrix3f R = T_world_camera.linear().cast<float>();
+        const Eigen::Vector3f origin = T_world_camera.translation().cast<float>();
         for (int u = x; u < std::min(x + kAcross, rays.cols); ++u) {
           const cv::Vec2f& xy = rays(v, u);
           packet[count].origin = origin;
@@ -95,8 +96,9 @@ cv::Mat1b mixed_pixels(const SurfaceBuffer& surfaces,
     const Surfel& here = surfaces.at(x, y);
     const Surfel& there = surfaces.at(nx, ny);
     if (continuous(here, there)) return;
-    const float motion = std::max(motion_px(here, scene, exposure, focal_length_px),
-                                  motion_px(there, scene, exposure, focal_length_px));
+    const CameraExposure& row = exposure.of_row(y);
+    const float motion = std::max(motion_px(here, scene, row, focal_length_px),
+                                  motion_px(there, scene, row, focal_length_px));
     // The edge lies between the two centres and sweeps half of the motion to either side.
     const int reach =
         static_cast<int>(std::max(0.F, std::ceil(0.5F * std::min(motion, kFarthest) - 0.5F)));

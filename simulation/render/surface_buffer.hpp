@@ -35,9 +35,10 @@ struct SurfaceBuffer {
   }
 };
 
-/// The surfels of a camera whose pixel centres look along `rays` = (x/z, y/z).
+/// The surfels of a camera whose pixel centres look along `rays` = (x/z, y/z), in the middle of the
+/// exposure of each row.
 [[nodiscard]] SurfaceBuffer trace_surfaces(const RayScene& scene,
-                                           const Eigen::Isometry3d& T_world_camera,
+                                           const Exposure& exposure,
                                            const cv::Mat2f& rays);
 
 /// 255 where a pixel may show more than one smooth surface while the shutter is open: along the

@@ -83,6 +83,12 @@ Stamp SyntheticSequence::stamp(FrameId id) const {
   return parse_stamp(fmt::format("{:.6f}", kStart + time_s(id))).value();
 }
 
+Stamp SyntheticSequence::depth_stamp(FrameId id) const {
+  const ImageDelays& delays = options_.delays;
+  const double later_s = delays.depth_stamps_tell ? delays.depth_delay_s : 0;
+  return parse_stamp(fmt::format("{:.6f}", stamp(id).seconds + later_s)).value();
+}
+
 Eigen::Isometry3d SyntheticSequence::pose(FrameId id) const {
   return T_world_camera(options_.path, time_s(id));
 }
@@ -91,39 +97,61 @@ WorldState SyntheticSequence::state(FrameId id) const {
   return choreography_.at(time_s(id));
 }
 
-Exposure SyntheticSequence::exposure(FrameId id) const {
-  const double middle = time_s(id), half = 0.5 * options_.sensor.exposure_s;
-  const double open = std::max(0.0, middle - half), close = middle + half;
-  return {T_world_camera(options_.path, middle),
-          T_world_camera(options_.path, open),
-          T_world_camera(options_.path, close),
-          choreography_.at(open),
-          choreography_.at(close)};
+CameraExposure SyntheticSequence::camera_exposure(double middle_s) const {
+  const double half = 0.5 * options_.sensor.exposure_s;
+  return {T_world_camera(options_.path, std::max(0.0, middle_s)),
+          T_world_camera(options_.path, std::max(0.0, middle_s - half)),
+          T_world_camera(options_.path, std::max(0.0, middle_s + half))};
+}
+
+Exposure SyntheticSequence::exposure(double middle_s, double readout_s) const {
+  const double half = 0.5 * options_.sensor.exposure_s;
+  Exposure exposure{camera_exposure(middle_s),
+                    choreography_.at(std::max(0.0, middle_s - half)),
+                    choreography_.at(std::max(0.0, middle_s + half))};
+  if (readout_s == 0) return exposure;
+  const int rows = options_.camera.height_px;
+  for (int y = 0; y < rows; ++y) {
+    const double row = static_cast<double>(y) / rows - 0.5;
+    exposure.rows.push_back(camera_exposure(middle_s + row * readout_s));
+  }
+  return exposure;
 }
 
 SyntheticFrame SyntheticSequence::render(FrameId id) const {
   STILLMAP_CHECK(id.index() < size());
-  const RenderedImage perfect = renderer_.render(exposure(id));
+  const ImageDelays& delays = options_.delays;
+  const RenderedImage truth = renderer_.render(exposure(time_s(id), 0));
+  RenderedImage perfect = truth;
+  if (delays.readout_s != 0) perfect = renderer_.render(exposure(time_s(id), delays.readout_s));
+  if (!delays.none()) {
+    perfect.depth =
+        renderer_.depth(exposure(time_s(id) + delays.depth_delay_s, delays.depth_readout_s));
+  }
   const RgbdImage measured =
       apply_sensor(perfect, options_.camera, options_.sensor, options_.seed, id);
   RgbdFrame frame;
   frame.id = id;
   frame.stamp = stamp(id);
-  frame.depth_stamp_s = frame.stamp.seconds;
+  frame.depth_stamp_s = depth_stamp(id).seconds;
   frame.color = measured.color;
   frame.depth = measured.depth;
   frame.gray = to_gray(measured.color);
-  return {std::make_shared<const RgbdFrame>(std::move(frame)), perfect};
+  return {std::make_shared<const RgbdFrame>(std::move(frame)), truth, perfect.ids};
 }
 
 ColorImage SyntheticSequence::right_image(FrameId id, double baseline_m) const {
   STILLMAP_CHECK(id.index() < size());
-  Exposure moved = exposure(id);
+  Exposure moved = exposure(time_s(id), options_.delays.readout_s);
   const Eigen::Translation3d to_the_right(baseline_m, 0, 0);
-  for (Eigen::Isometry3d* T :
-       {&moved.T_world_camera, &moved.T_world_camera_open, &moved.T_world_camera_close}) {
-    *T = *T * to_the_right;
-  }
+  const auto move = [&](CameraExposure& camera) {
+    for (Eigen::Isometry3d* T :
+         {&camera.T_world_camera, &camera.T_world_camera_open, &camera.T_world_camera_close}) {
+      *T = *T * to_the_right;
+    }
+  };
+  move(moved);
+  for (CameraExposure& row : moved.rows) move(row);
   return apply_second_sensor(renderer_.render(moved).color, options_.sensor, options_.seed, id);
 }
 

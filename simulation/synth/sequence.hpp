@@ -21,6 +21,21 @@ namespace stillmap {
 /// horizontal field of view and relative optical centre. Stored depth has 5000 units per metre.
 [[nodiscard]] CameraModel synthetic_camera(int width_px, int height_px);
 
+/// When the rows of a frame's images are taken. The middle row of the colour image is taken at the
+/// frame's stamp; things that move are shown as they are then in all rows of it.
+struct ImageDelays {
+  double readout_s = 0;        ///< rolling shutter of colour: from the first row to the last
+  double depth_readout_s = 0;  ///< the same of depth
+  double depth_delay_s = 0;    ///< how much later than colour the middle row of depth is taken
+  /// Whether the stamps of depth images are the times at which they are taken; else they are those
+  /// of the colour images.
+  bool depth_stamps_tell = true;
+
+  [[nodiscard]] bool none() const {
+    return readout_s == 0 && depth_readout_s == 0 && depth_delay_s == 0;
+  }
+};
+
 struct SyntheticOptions {
   PathKind path = PathKind::kXyz;
   Activity activity = Activity::kNone;
@@ -31,12 +46,14 @@ struct SyntheticOptions {
   std::shared_ptr<const Assets> assets;  ///< people and furniture; null: none
   RenderOptions render;                  ///< effects of light
   SensorOptions sensor;                  ///< faults of a Kinect unless SensorOptions::clean()
+  ImageDelays delays;                    ///< when the rows of the images are taken
 };
 
 /// A frame of the sensor with its truth.
 struct SyntheticFrame {
   FramePtr frame;
-  RenderedImage truth;  ///< without the sensor's faults
+  RenderedImage truth;  ///< all rows at the frame's time, without the sensor's faults
+  cv::Mat1b ids;        ///< mask ids of the pixels of the colour image
 };
 
 /// The vertices of a movable object at one time.
@@ -60,7 +77,7 @@ class SyntheticSequence {
   [[nodiscard]] const SyntheticOptions& options() const { return options_; }
   [[nodiscard]] const World& world() const { return *world_; }
 
-  /// Frame `id`, which must be below size(). Depth and colour have the same time.
+  /// Frame `id`, which must be below size().
   [[nodiscard]] SyntheticFrame render(FrameId id) const;
   [[nodiscard]] FramePtr frame(FrameId id) const { return render(id).frame; }
 
@@ -69,6 +86,8 @@ class SyntheticSequence {
 
   /// The stamp of frame `id`, the middle of its exposure, with six decimals. The first is 1000 s.
   [[nodiscard]] Stamp stamp(FrameId id) const;
+  /// The stamp of the depth image of frame `id`.
+  [[nodiscard]] Stamp depth_stamp(FrameId id) const;
 
   /// The true pose of frame `id` in the coordinates of the office.
   [[nodiscard]] Eigen::Isometry3d pose(FrameId id) const;
@@ -88,7 +107,8 @@ class SyntheticSequence {
 
  private:
   [[nodiscard]] double time_s(FrameId id) const;
-  [[nodiscard]] Exposure exposure(FrameId id) const;
+  [[nodiscard]] Exposure exposure(double middle_s, double readout_s) const;
+  [[nodiscard]] CameraExposure camera_exposure(double middle_s) const;
 
   SyntheticOptions options_;
   std::shared_ptr<const World> world_;

@@ -311,5 +311,52 @@ TEST(SyntheticCamera, KeepsTheFieldOfViewOfTheOriginal) {
   EXPECT_NEAR((-0.5 - half.cy) / half.fy, (-0.5 - original.cy) / original.fy, 1e-12);
 }
 
+// Frames at 40 a second, whose times are those of some rows of frames at 30 a second.
+SyntheticOptions fast_options() {
+  SyntheticOptions options = small_options(PathKind::kXyz);
+  options.frames_per_second = 40;
+  return options;
+}
+
+double share_of_equal_depth(const cv::Mat1f& a, const cv::Mat1f& b) {
+  int equal = 0;
+  for (int x = 0; x < a.cols; ++x) equal += std::abs(a(0, x) - b(0, x)) < 1e-4F ? 1 : 0;
+  return static_cast<double>(equal) / a.cols;
+}
+
+TEST(SyntheticSequence, RowsOfARollingShutterAreThoseOfTheirTimes) {
+  SyntheticOptions options = small_options(PathKind::kXyz);
+  options.delays = {.readout_s = 0.1, .depth_readout_s = 0.1};
+  const SyntheticSequence rolling(options), fast(fast_options());
+  const FramePtr seen = rolling.frame(FrameId(30));
+  // The first row is read at 0.95 s, the middle one at 1 s, that at three quarters at 1.025 s.
+  for (const auto& [row, frame] : {std::pair{0, 38}, {120, 40}, {180, 41}}) {
+    const FramePtr then = fast.frame(FrameId(static_cast<std::uint32_t>(frame)));
+    const FramePtr other = fast.frame(FrameId(static_cast<std::uint32_t>(frame + 2)));
+    EXPECT_GT(share_of_equal_depth(seen->depth.mat.row(row), then->depth.mat.row(row)), 0.98);
+    EXPECT_LT(share_of_equal_depth(seen->depth.mat.row(row), other->depth.mat.row(row)), 0.5);
+    const auto difference = [&](const FramePtr& of) {
+      return cv::norm(seen->color.mat.row(row), of->color.mat.row(row), cv::NORM_L1);
+    };
+    EXPECT_LT(difference(then), 0.25 * difference(other));
+  }
+}
+
+TEST(SyntheticSequence, DepthIsTakenLaterAndItsStampMayTell) {
+  SyntheticOptions options = small_options(PathKind::kXyz);
+  options.delays.depth_delay_s = 0.05;
+  const SyntheticSequence late(options), fast(fast_options()),
+      punctual(small_options(PathKind::kXyz));
+  const SyntheticFrame seen = late.render(FrameId(30));
+  EXPECT_TRUE(same_bytes(seen.frame->depth.mat, fast.frame(FrameId(42))->depth.mat));
+  const SyntheticFrame plain = punctual.render(FrameId(30));
+  EXPECT_TRUE(same_bytes(seen.frame->color.mat, plain.frame->color.mat));
+  EXPECT_TRUE(same_bytes(seen.truth.depth.mat, plain.truth.depth.mat));
+  EXPECT_NEAR(seen.frame->depth_stamp_s, seen.frame->stamp.seconds + 0.05, 1e-6);
+  options.delays.depth_stamps_tell = false;
+  const SyntheticSequence hidden(options);
+  EXPECT_EQ(hidden.depth_stamp(FrameId(30)).text, hidden.stamp(FrameId(30)).text);
+}
+
 }  // namespace
 }  // namespace stillmap

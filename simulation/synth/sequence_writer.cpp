@@ -59,10 +59,10 @@ struct Lists {
   std::string depth = "# depth maps\n# timestamp filename\n";
   std::string associations;
 
-  void add(const std::string& stamp) {
+  void add(const std::string& stamp, const std::string& depth_stamp) {
     rgb += fmt::format("{0} rgb/{0}.png\n", stamp);
-    depth += fmt::format("{0} depth/{0}.png\n", stamp);
-    associations += fmt::format("{0} rgb/{0}.png {0} depth/{0}.png\n", stamp);
+    depth += fmt::format("{0} depth/{0}.png\n", depth_stamp);
+    associations += fmt::format("{0} rgb/{0}.png {1} depth/{1}.png\n", stamp, depth_stamp);
   }
 };
 
@@ -107,11 +107,12 @@ WrittenFrame write_frame(const SyntheticSequence& sequence,
   const RgbdFrame& frame = *rendered.frame;
   const std::string name = frame.stamp.text + ".png";
   result.write("rgb/" + name, encode_png(frame.color));
-  result.write("depth/" + name, encode_depth_png(frame.depth, sequence.camera().depth_factor));
+  result.write("depth/" + sequence.depth_stamp(id).text + ".png",
+               encode_depth_png(frame.depth, sequence.camera().depth_factor));
   if (stereo) stereo->write_pair(frame);
-  result.write("truth/masks/" + name, encode_mask_png(rendered.truth.ids));
+  result.write("truth/masks/" + name, encode_mask_png(rendered.ids));
 
-  const ObjectMask ids(rendered.truth.ids);
+  const ObjectMask ids(rendered.ids);
   WrittenFrame written{rendered.truth,
                        {id, frame.stamp, ids, {}},
                        {frame.stamp, frame_objects(ids, sequence.speeds(id))}};
@@ -135,7 +136,8 @@ class TruthFolder {
     for (const TruthFrameObject& object : frame.objects.objects) {
       if (object.moving) moving.push_back(object.id);
     }
-    maps_.add(frame.image.color, frame.image.depth, frame.truth.mask, T_world_camera, moving);
+    maps_.add(
+        frame.image.color, frame.image.depth, ObjectMask(frame.image.ids), T_world_camera, moving);
     frames_.push_back(frame.objects);
   }
 
@@ -206,7 +208,7 @@ void write_sequence(const SyntheticSequence& sequence,
       [&](std::size_t i, const WrittenFrame& frame) {
         truth.add(frame, sequence.pose(frame.truth.frame));
         detections.add(frame.truth);
-        lists.add(frame.truth.stamp.text);
+        lists.add(frame.truth.stamp.text, sequence.depth_stamp(frame.truth.frame).text);
         if (on_progress) on_progress(i + 1, sequence.size());
       });
   detections.finish();

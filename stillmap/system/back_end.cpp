@@ -2,10 +2,12 @@
 #include "stillmap/system/back_end.hpp"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "stillmap/core/error.hpp"
 #include "stillmap/session/session_map.hpp"
+#include "stillmap/slam/tracking/trajectory_smoother.hpp"
 
 namespace stillmap {
 namespace {
@@ -116,6 +118,7 @@ std::size_t BackEnd::record(const RgbdFrame& frame, const TrackedFrame& tracked)
       {frame.stamp,
        tracked.reference,
        session_.map.T_world_keyframe(tracked.reference).inverse() * tracked.T_world_camera});
+  information_.push_back(tracked.information);
   return session_.frames.size() - 1;
 }
 
@@ -126,6 +129,27 @@ void BackEnd::refer_to_keyframe(std::size_t record, KeyframeId keyframe) {
 void BackEnd::finish() {
   apply_finished_work(kEnd);  // which may begin another adjustment
   loops_.finish(session_.map, main_submap(session_, first_frame_));
+  smooth();
+}
+
+// Smooths the trajectory of this run's frames, in each submap for itself.
+void BackEnd::smooth() {
+  std::map<SubmapId, std::vector<std::size_t>> frames;
+  for (std::size_t i = first_frame_; i < session_.frames.size(); ++i) {
+    frames[submap_of(session_, session_.frames[i])].push_back(i);
+  }
+  for (const auto& [submap, records] : frames) {
+    std::vector<MeasuredPose> measured;
+    for (const std::size_t i : records) {
+      measured.push_back(
+          {session_.frames[i].stamp.seconds, T_world_camera(i), information_[i - first_frame_]});
+    }
+    const std::vector<Eigen::Isometry3d> poses = smooth_trajectory(measured);
+    for (std::size_t k = 0; k < records.size(); ++k) {
+      FrameRecord& frame = session_.frames[records[k]];
+      frame.T_reference_frame = session_.map.T_world_keyframe(frame.reference).inverse() * poses[k];
+    }
+  }
 }
 
 // If this run tracked no frame, the result is the submap of the session that it continues.

@@ -125,4 +125,12 @@ PoseEstimate optimize_pose(const CameraModel& camera,
   return estimate;
 }
 
+Matrix6d pose_information(const CameraModel& camera,
+                          const Eigen::Isometry3d& T_camera_world,
+                          Observations observations) {
+  const std::vector<std::uint8_t> all(observations.size(), 1);
+  const Matrix6d H = linearize(camera, T_camera_world, observations, all, false).H;
+  return H.selfadjointView<Eigen::Lower>();
+}
+
 }  // namespace stillmap

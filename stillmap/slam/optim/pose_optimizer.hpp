@@ -31,4 +31,10 @@ struct PoseEstimate {
                                          const Eigen::Isometry3d& T_camera_world,
                                          std::span<const PoseObservation> observations);
 
+/// The information that the observations give of a step of the pose by perturb_left(): the inverse
+/// of the covariance that they leave. Those behind the camera give none.
+[[nodiscard]] Matrix6d pose_information(const CameraModel& camera,
+                                        const Eigen::Isometry3d& T_camera_world,
+                                        std::span<const PoseObservation> observations);
+
 }  // namespace stillmap

@@ -7,6 +7,7 @@
 
 #include "stillmap/core/ids.hpp"
 #include "stillmap/core/status.hpp"
+#include "stillmap/geometry/se3.hpp"
 #include "stillmap/slam/features/features.hpp"
 
 namespace stillmap {
@@ -17,6 +18,8 @@ struct TrackedFrame {
   double stamp_s = 0;
   TrackingStatus status = TrackingStatus::kLost;
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< unless lost
+  /// Of a step of the pose's inverse by perturb_left().
+  Matrix6d information = Matrix6d::Zero();
   KeyframeId reference;  ///< the key frame that shares most landmarks with the frame
   FeaturesPtr features;
   std::vector<LandmarkId> landmarks;  ///< per feature: inliers of the pose; invalid for others

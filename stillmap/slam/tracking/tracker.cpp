@@ -26,6 +26,16 @@ TrackedFrame Tracker::start(const RgbdFrame& frame, FeaturesPtr features) {
   tracked.stamp_s = frame.stamp.seconds;
   tracked.status = TrackingStatus::kInitialized;
   tracked.landmarks.assign(features->size(), LandmarkId{});
+  Matches own;
+  for (std::uint32_t i = 0; i < features->size(); ++i) {
+    if (!measure_.has_depth(*features, i)) continue;
+    own.push_back({i,
+                   {},
+                   camera_.unproject(features->px[i].cast<double>(),
+                                     static_cast<double>(features->depth_m[i]))});
+  }
+  tracked.information =
+      pose_information(camera_, Eigen::Isometry3d::Identity(), observations_of(*features, own));
   tracked.features = std::move(features);
   last_ = tracked;
   motion_.reset();
@@ -64,6 +74,8 @@ TrackedFrame Tracker::track(const RgbdFrame& frame,
   }
   tracked.status = lost_ ? TrackingStatus::kRelocalized : TrackingStatus::kTracked;
   tracked.T_world_camera = pose->T_camera_world.inverse();
+  tracked.information = pose_information(
+      camera_, pose->T_camera_world, observations_of(*tracked.features, pose->inliers));
   for (const Match& match : pose->inliers) tracked.landmarks[match.feature] = match.landmark;
   remember(tracked, map);
   return tracked;
@@ -169,9 +181,8 @@ void Tracker::remember(const TrackedFrame& frame, const Map& map) {
   lost_ = false;
 }
 
-Tracker::PoseFromMatches Tracker::optimize(const Features& features,
-                                           const Eigen::Isometry3d& initial,
-                                           const Matches& matches) const {
+std::vector<PoseObservation> Tracker::observations_of(const Features& features,
+                                                      const Matches& matches) const {
   std::vector<PoseObservation> observations;
   observations.reserve(matches.size());
   for (const Match& match : matches) {
@@ -179,7 +190,13 @@ Tracker::PoseFromMatches Tracker::optimize(const Features& features,
                             measure_(features, match.feature),
                             static_cast<double>(features.trust_of(match.feature))});
   }
-  const PoseEstimate estimate = optimize_pose(camera_, initial, observations);
+  return observations;
+}
+
+Tracker::PoseFromMatches Tracker::optimize(const Features& features,
+                                           const Eigen::Isometry3d& initial,
+                                           const Matches& matches) const {
+  const PoseEstimate estimate = optimize_pose(camera_, initial, observations_of(features, matches));
   PoseFromMatches result{estimate.T_camera_world, {}};
   for (std::size_t i = 0; i < matches.size(); ++i) {
     if (estimate.inlier[i] != 0) result.inliers.push_back(matches[i]);

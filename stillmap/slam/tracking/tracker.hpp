@@ -186,6 +186,8 @@ class Tracker {
   [[nodiscard]] std::vector<LandmarkId> local_landmarks(TrackedFrame& frame,
                                                         const Matches& matches,
                                                         const Map& map) const;
+  [[nodiscard]] std::vector<PoseObservation> observations_of(const Features& features,
+                                                             const Matches& matches) const;
   [[nodiscard]] PoseFromMatches optimize(const Features& features,
                                          const Eigen::Isometry3d& initial,
                                          const Matches& matches) const;
