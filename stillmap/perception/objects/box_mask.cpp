@@ -88,6 +88,36 @@ class CellGrid {
 
   /// Decides the side of every cell with depth.
   void divide(float layer_m) {
+    divide_by_paths(layer_m);
+    // A leg behind the other one is a part of its own. A missed part does more harm than a false
+    // one: only what is far from the layer leaves a rough mask.
+    for (int i = 0; i < size(); ++i) {
+      const bool near = at(depth_, i) > 0 && std::abs(at(depth_, i) - layer_m) < kThickness_m;
+      if (at(own_, i) != 0 && near) at(side_, i) = Side::kObject;
+    }
+  }
+
+  /// The share of the rough mask's cells that have depth.
+  [[nodiscard]] double measured_share() const {
+    int own = 0, measured = 0;
+    for (int i = 0; i < size(); ++i) {
+      own += at(own_, i);
+      measured += at(own_, i) != 0 && at(depth_, i) > 0 ? 1 : 0;
+    }
+    return own == 0 ? 0 : static_cast<double>(measured) / own;
+  }
+
+  [[nodiscard]] bool is_object(int i) const { return at(side_, i) == Side::kObject; }
+  [[nodiscard]] int size() const { return columns_ * rows_; }
+  [[nodiscard]] int stride() const { return stride_; }
+  [[nodiscard]] cv::Rect cell(int i) const {
+    return cv::Rect(
+        area_.x + i % columns_ * stride_, area_.y + i / columns_ * stride_, stride_, stride_);
+  }
+  [[nodiscard]] float depth(int i) const { return at(depth_, i); }
+
+ private:
+  void divide_by_paths(float layer_m) {
     mark_certain(layer_m);
     claim_enclosed_parts(layer_m);
     std::vector<float> way(side_.size(), std::numeric_limits<float>::infinity());
@@ -115,26 +145,6 @@ class CellGrid {
     }
   }
 
-  /// The share of the rough mask's cells that have depth.
-  [[nodiscard]] double measured_share() const {
-    int own = 0, measured = 0;
-    for (int i = 0; i < size(); ++i) {
-      own += at(own_, i);
-      measured += at(own_, i) != 0 && at(depth_, i) > 0 ? 1 : 0;
-    }
-    return own == 0 ? 0 : static_cast<double>(measured) / own;
-  }
-
-  [[nodiscard]] bool is_object(int i) const { return at(side_, i) == Side::kObject; }
-  [[nodiscard]] int size() const { return columns_ * rows_; }
-  [[nodiscard]] int stride() const { return stride_; }
-  [[nodiscard]] cv::Rect cell(int i) const {
-    return cv::Rect(
-        area_.x + i % columns_ * stride_, area_.y + i / columns_ * stride_, stride_, stride_);
-  }
-  [[nodiscard]] float depth(int i) const { return at(depth_, i); }
-
- private:
   [[nodiscard]] cv::Point pixel(int i) const {
     return cell(i).tl() + cv::Point(stride_ / 2, stride_ / 2);
   }

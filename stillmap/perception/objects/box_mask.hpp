@@ -26,10 +26,10 @@ namespace stillmap {
 
 /// The pixels, by depth, of an object whose mask is rough (PixelSource::kRoughNetwork).
 ///
-/// As mask_from_depth(), but the object's layer is the strongest in its mask, the mask's pixels at
-/// that layer certainly belong to the object, and paths are longer where they contradict the mask.
-/// So the background in the mask leaves it, and what the mask lacks of the object joins. Pixels
-/// without depth stay as they are. Returns an empty patch where little of the mask has depth.
+/// As mask_from_depth(), but the object's layer is the strongest in its mask, the mask's pixels
+/// near that layer belong to the object, and paths are longer where they contradict the mask. So
+/// the distant background leaves the mask, and what it lacks of the object joins. Pixels without
+/// depth stay as they are. Returns an empty patch where little of the mask has depth.
 [[nodiscard]] PixelPatch mask_refined_by_depth(const DepthImage& depth,
                                                const ObjectMask& mask,
                                                const DetectedObject& object);

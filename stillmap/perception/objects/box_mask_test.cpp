@@ -121,7 +121,7 @@ TEST(MaskRefinedByDepth, KeepsPixelsWithoutDepthAndIsEmptyWithoutAny) {
 TEST(CompleteMasks, RefinedMasksLeavePixelsToBoxesAlone) {
   DepthImage depth = room_with_thing();
   const cv::Rect chair(210, 230, 90, 70);
-  cv::Mat1f(depth.mat, chair).setTo(1.4F);
+  cv::Mat1f(depth.mat, chair).setTo(1.2F);
   FrameDetections found;
   found.objects = {{1, "chair", 0.8F, {208, 228, 302, 302}}, with_rough_mask(2, 0.5F)};
   found.mask = ObjectMask(cv::Mat1b(480, 640, std::uint8_t{0}));
