@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kFewestSightings = 5;
 constexpr std::size_t kSamplePoints = 64;
-constexpr double kDecided = 0.3;   // share of the surface that a view must tell of
+constexpr double kDecided = 0.3;    // share of the surface that a view must tell of
 constexpr double kSeenAgain = 0.1;  // share of the surface that tells that it still stands there
 constexpr int kFewestViews = 2;     // that see through a place, and that measure what came there
 constexpr double kMostColorDistance = 0.6;
@@ -77,8 +77,7 @@ double likeness(const KnownObject& a, const KnownObject& b) {
 bool last_seen_before(const History& history, std::size_t view) {
   const auto at = history.seen.begin() + static_cast<std::ptrdiff_t>(view);
   const auto much = [](double share) { return share > kSeenAgain; };
-  return std::any_of(history.seen.begin(), at, much) &&
-         std::none_of(at, history.seen.end(), much);
+  return std::any_of(history.seen.begin(), at, much) && std::none_of(at, history.seen.end(), much);
 }
 
 /// The places from which one thing may have come, each with its confidence.

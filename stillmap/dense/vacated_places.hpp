@@ -31,13 +31,14 @@ inline constexpr double kVacatedFrom = 0.6;
 /// somewhere: from the place of a thing of a similar class that no view has measured since, or from
 /// where no view ever was. How well each of these fits, L, is 1 for equal colors and size and 0 for
 /// colors 0.6 apart (Hellinger); unseen places have 0.25. The confidence that it came from a place
-/// is that place's L over the sum of all. So of two equal chairs, one of which must have been taken,
-/// both stay: the confidence is less than a half. Two equal chairs that both stand stay because
-/// neither came. Pairs are made from the best down, and each object is used once on each side.
+/// is that place's L over the sum of all. So of two equal chairs, one of which must have been
+/// taken, both stay: the confidence is less than a half. Two equal chairs that both stand stay
+/// because neither came. Pairs are made from the best down, and each object is used once on each
+/// side.
 ///
 /// `objects` are in the world frame of the poses. Only those that people move count
-/// (Category::kPotentiallyDynamic), found in at least five frames. `views` are in the order of their
-/// time.
+/// (Category::kPotentiallyDynamic), found in at least five frames. `views` are in the order of
+/// their time.
 [[nodiscard]] std::vector<VacatedPlace> vacated_places(std::span<const KnownObject> objects,
                                                        const CategoryTable& categories,
                                                        std::span<const PosedView> views,
@@ -53,7 +54,8 @@ inline constexpr double kVacatedFrom = 0.6;
                                          std::span<const VacatedPlace> places,
                                          double confidence = kVacatedFrom);
 
-/// static_map() without_vacated(), where `config` removes what views see through; else static_map().
+/// static_map() without_vacated(), where `config` removes what views see through; else
+/// static_map().
 [[nodiscard]] PointCloud map_without_vacated(std::span<const PosedView> views,
                                              std::span<const KnownObject> objects,
                                              const CategoryTable& categories,

@@ -45,8 +45,8 @@ struct Place {
 };
 const Place kA{0.85, -1.95}, kB{-1.7, -0.6};
 
-/// The rendered office with chairs at places, seen by a camera with true poses and a network without
-/// fault.
+/// The rendered office with chairs at places, seen by a camera with true poses and a network
+/// without fault.
 class OfficeWithChairs {
  public:
   explicit OfficeWithChairs(std::vector<std::string> chairs) : chairs_(std::move(chairs)) {
@@ -84,8 +84,7 @@ class OfficeWithChairs {
   /// How many points above the floor the map has within half a metre of a place.
   [[nodiscard]] std::size_t points_above_floor(const Place& at, bool with_objects = true) const {
     const std::vector<KnownObject> known = with_objects ? objects() : std::vector<KnownObject>();
-    const PointCloud map =
-        map_without_vacated(posed(), known, CategoryTable({}), camera_, config_);
+    const PointCloud map = map_without_vacated(posed(), known, CategoryTable({}), camera_, config_);
     std::size_t count = 0;
     for (std::size_t i = 0; i < map.size(); ++i) {
       const Eigen::Vector3f& p = map.positions[i];
