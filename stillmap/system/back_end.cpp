@@ -141,8 +141,10 @@ void BackEnd::smooth() {
   for (const auto& [submap, records] : frames) {
     std::vector<MeasuredPose> measured;
     for (const std::size_t i : records) {
+      const Eigen::Isometry3d T = T_world_camera(i);
+      const bool defines_axes = T.matrix() == Eigen::Isometry3d::Identity().matrix();
       measured.push_back(
-          {session_.frames[i].stamp.seconds, T_world_camera(i), information_[i - first_frame_]});
+          {session_.frames[i].stamp.seconds, T, information_[i - first_frame_], defines_axes});
     }
     const std::vector<Eigen::Isometry3d> poses = smooth_trajectory(measured);
     for (std::size_t k = 0; k < records.size(); ++k) {

@@ -180,7 +180,7 @@ void expect_gain(Disturbance disturbance,
                  const std::string& stage) {
   const Comparison errors = compare(disturbance, network, mode, stage);
   EXPECT_LT(errors.with, 0.02);
-  EXPECT_GT(errors.without, 1.6 * errors.with);
+  EXPECT_GT(errors.without, 1.4 * errors.with);
 }
 
 TEST(Stages, MasksKeepTheCurtainOutOfThePose) {

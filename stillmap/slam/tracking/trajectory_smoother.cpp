@@ -12,6 +12,12 @@ namespace {
 
 // With fewer poses the noise is not told from the motion.
 constexpr std::size_t kFewest = 20;
+// The information of an exact pose, as a multiple of that of its features: far below where numbers
+// fail.
+constexpr double kExact = 1e6;
+// The greatest scale of the noise. Poses of real and rendered cameras have 0.7 to 3.6; one that
+// jumps from frame to frame has more, because no motion is likely then.
+constexpr double kMostNoise = 10;
 // Longer trajectories are smoothed in parts, which bounds memory.
 constexpr std::size_t kLongest = 1000;
 
@@ -78,7 +84,7 @@ Block information_of(const MeasuredPose& pose) {
   Matrix6d M = Matrix6d::Zero();
   M.topLeftCorner<3, 3>() = -pose.T_world_camera.linear().transpose();
   M.bottomRightCorner<3, 3>() = -Eigen::Matrix3d::Identity();
-  const Matrix6d H = M.transpose() * pose.information * M;
+  const Matrix6d H = (pose.is_exact ? kExact : 1.0) * M.transpose() * pose.information * M;
   Block block = Block::Zero();
   block.block<3, 3>(0, 0) = H.topLeftCorner<3, 3>();
   block.block<3, 3>(0, 6) = H.topRightCorner<3, 3>();
@@ -97,9 +103,13 @@ class Chain {
     }
   }
 
-  // -2 log of the likelihood of the measured poses under the best scale of all noise, up to a
-  // constant; nothing where numbers fail.
-  [[nodiscard]] std::optional<double> surprise(const Agility& agility) const {
+  struct Fit {
+    double surprise = 0;  // -2 log of the likelihood under the best scale of all noise
+    double noise = 0;     // that scale: the poses' errors by those of their information
+  };
+
+  // How well the measured poses fit, up to a constant; nothing where numbers fail.
+  [[nodiscard]] std::optional<Fit> fit(const Agility& agility) const {
     double log_determinant = 0, cost = 0;
     const bool solved =
         eliminate(agility, [&](const Eigen::LLT<Block>& S, const Unknowns& b, const Unknowns& at) {
@@ -111,9 +121,10 @@ class Chain {
     }
     if (!solved || !(cost > 0)) return std::nullopt;
     const double freedom = 6.0 * static_cast<double>(information_.size()) - kUnknowns;
-    return freedom * std::log(cost / freedom) + log_determinant +
-           6.0 * static_cast<double>(links_.size()) *
-               (std::log(agility.position) + std::log(agility.rotation));
+    const double densities = 6.0 * static_cast<double>(links_.size()) *
+                             (std::log(agility.position) + std::log(agility.rotation));
+    return Fit{freedom * std::log(cost / freedom) + log_determinant + densities,
+               std::sqrt(cost / freedom)};
   }
 
   // The most probable unknowns of all frames; none where numbers fail.
@@ -176,28 +187,30 @@ class Chain {
   std::vector<Link> links_;
 };
 
-// The densities of greatest likelihood, to a fifth of a decade, by a search along the axes.
+// The densities of greatest likelihood, to a fifth of a decade, by a search along the axes. None
+// where they explain motion as noise.
 std::optional<Agility> most_likely(const Chain& chain) {
   const auto at = [](double position, double rotation) {
     return Agility{std::pow(10.0, position), std::pow(10.0, rotation)};
   };
   constexpr double kFarthest = 8;  // decades
   double position = 0, rotation = 0;
-  std::optional<double> least = chain.surprise(at(position, rotation));
-  if (!least) return std::nullopt;
+  std::optional<Chain::Fit> best = chain.fit(at(position, rotation));
+  if (!best) return std::nullopt;
   for (double step = 1.6; step >= 0.2;) {
     bool better = false;
     for (const auto& [dp, dr] : {std::pair{step, 0.0}, {-step, 0.0}, {0.0, step}, {0.0, -step}}) {
       if (std::max(std::abs(position + dp), std::abs(rotation + dr)) > kFarthest) continue;
-      const std::optional<double> there = chain.surprise(at(position + dp, rotation + dr));
-      if (!there || *there >= *least) continue;
-      least = there;
+      const std::optional<Chain::Fit> there = chain.fit(at(position + dp, rotation + dr));
+      if (!there || there->surprise >= best->surprise) continue;
+      best = there;
       position += dp;
       rotation += dr;
       better = true;
     }
     if (!better) step /= 2;
   }
+  if (best->noise > kMostNoise) return std::nullopt;
   return at(position, rotation);
 }
 
@@ -208,6 +221,7 @@ void smooth_part(std::span<const MeasuredPose> measured, std::span<Eigen::Isomet
   if (!agility) return;
   const std::vector<Unknowns> found = chain.solve(*agility);
   for (std::size_t i = 0; i < found.size(); ++i) {
+    if (measured[i].is_exact) continue;
     const Eigen::Isometry3d& T = measured[i].T_world_camera;
     poses[i] = make_pose(Eigen::Quaterniond(T.linear()) * so3_exp(found[i].segment<3>(6)),
                          T.translation() + found[i].head<3>());

@@ -101,6 +101,22 @@ TEST(SmoothTrajectory, LeavesExactPosesAlone) {
 }
 
 // A camera that jumps from frame to frame has no velocity to go by.
+// The first frame defines the axes. The others join it there, and not where its features alone
+// would put it.
+TEST(SmoothTrajectory, KeepsThePoseThatDefinesTheAxes) {
+  std::vector<MeasuredPose> measured = walk(200, {});
+  measured[0].T_world_camera = waving(measured[0].stamp_s);
+  measured[0].is_exact = true;
+  const std::vector<Eigen::Isometry3d> smooth = smooth_trajectory(measured);
+  EXPECT_EQ(smooth[0].matrix(), measured[0].T_world_camera.matrix());
+  const auto error_m = [&](const Eigen::Isometry3d& T) {
+    return (T.translation() - waving(measured[1].stamp_s).translation()).norm();
+  };
+  EXPECT_LT(error_m(smooth[1]), error_m(measured[1].T_world_camera));
+  measured[0].is_exact = false;
+  EXPECT_LT(error_m(smooth[1]), error_m(smooth_trajectory(measured)[1]));
+}
+
 TEST(SmoothTrajectory, LeavesAJerkyCameraNearlyAlone) {
   std::mt19937 rng(5);
   std::normal_distribution<double> normal;
