@@ -5,7 +5,6 @@
 
 #include <fmt/core.h>
 
-#include "stillmap/core/error.hpp"
 #include "stillmap/io/image_io.hpp"
 #include "stillmap/sensor/depth_unit.hpp"
 
@@ -43,7 +42,7 @@ SensorCamera sensor_camera(const Sequence& sequence,
         depth_unit_evidence(first_stored_depths(sequence, selection));
     depth_factor = evidence.depth_factor();
     if (!depth_factor) {
-      throw Error(
+      throw UnknownDepthUnit(
           "camera '{}' gives no depth_factor, and the depth images do not tell it: half of their "
           "pixels are nearer than {:.2f} m at 1000, {:.2f} m at 5000; give --depth-factor",
           camera.name,

@@ -56,7 +56,7 @@ Sequence open_sequence(const SequenceArguments& arguments) {
   try {
     return Sequence::open(arguments.path, sequence_options(arguments));
   } catch (const UnknownCamera& error) {
-    throw Error("{} (--camera NAME or FILE names it)", error.what());
+    throw UnknownCamera("{} (--camera NAME or FILE names it)", error.what());
   }
 }
 

@@ -75,12 +75,12 @@ std::optional<Sequence> open_with_depth(const SegmentArguments& arguments, std::
     Sequence sequence = open_sequence(arguments.sequence);
     sequence.use_camera(sensor_camera(sequence, {}, arguments.depth_factor).camera);
     return sequence;
-  } catch (const Error& error) {
-    // What a user named has to be right.
-    if (!arguments.sequence.camera.empty() || arguments.depth_factor) throw;
-    why_not = error.what();
-    return std::nullopt;
+  } catch (const UnknownCamera& unknown) {
+    why_not = unknown.what();
+  } catch (const UnknownDepthUnit& unknown) {
+    why_not = unknown.what();
   }
+  return std::nullopt;
 }
 
 DepthImage depth_of(const Sequence& sequence, std::size_t index, cv::Size size) {
