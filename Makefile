@@ -93,7 +93,7 @@ benchmark-page:
 # against that of the last release.
 bench-check: build
 	@tools/bench_runs --program $(program) --frames 100 --out build/bench/check.json
-	@tools/bench_compare bench/baseline.json build/bench/check.json --only user_cpu_ms --yardstick --at-most 2
+	@tools/bench_compare bench/baseline.json build/bench/check.json --only user_cpu_ms --yardstick --at-most 1.5
 
 # The page of the library's classes: build/api/html/index.html.
 api: setup
