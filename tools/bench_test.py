@@ -187,7 +187,7 @@ class Runs(Folder):
         folder = self.sequence("with")
         (self.sequence("without") / "groundtruth.txt").unlink()
         self.assertEqual(bench_runs.below(self.folder),
-                         [{"name": "with", "folder": str(folder), "detections": str(folder / "detections")}])
+                         [{"name": "with", "folder": str(folder), "found": True, "detections": str(folder / "detections")}])
 
     def test_failure_is_one_line(self):
         done = self.bench("--lengths", "13")
