@@ -83,13 +83,25 @@ std::optional<Sequence> open_with_depth(const SegmentArguments& arguments, std::
   return std::nullopt;
 }
 
-DepthImage depth_of(const Sequence& sequence, std::size_t index, cv::Size size) {
-  try {
-    const FramePtr frame = sequence.read(FrameId(static_cast<std::uint32_t>(index)));
-    return frame->depth.mat.size() == size ? frame->depth : DepthImage();
-  } catch (const DamagedImage&) {
-    return {};  // a run leaves this frame out
+struct Images {
+  ColorFile color;
+  DepthImage depth;  // empty where it is not used, or damaged
+};
+
+// The images of an entry, each decoded once.
+Images read_images(const SequenceContent& content,
+                   const std::optional<Sequence>& with_depth,
+                   std::size_t index) {
+  if (with_depth) {
+    try {
+      const FrameReading reading =
+          with_depth->read_with_warning(FrameId(static_cast<std::uint32_t>(index)));
+      return {{reading.frame->color, reading.warning}, reading.frame->depth};
+    } catch (const DamagedImage&) {
+      // A run leaves this frame out. Its colour image may be whole.
+    }
   }
+  return {content.images->color(index), {}};
 }
 
 // Gives the objects of one frame after another the masks that a run gives them.
@@ -122,7 +134,8 @@ Found segment_frame(const Segmenter& segmenter,
   const SequenceEntry& entry = content.entries[index];
   Found frame;
   try {
-    const auto [color, warning] = content.images->color(index);
+    const auto [file, depth] = read_images(content, with_depth, index);
+    const ColorImage& color = file.color;
     if (color.mat.size() != size) {
       throw Error("{}: {}x{} pixels, expected {}x{} as the images before",
                   entry.color_file.string(),
@@ -132,8 +145,8 @@ Found segment_frame(const Segmenter& segmenter,
                   size.height);
     }
     frame.detections = segmenter.segment(color, entry.stamp);
-    frame.warning = warning;
-    if (with_depth) frame.depth = depth_of(*with_depth, index, size);
+    frame.warning = file.warning;
+    frame.depth = depth;
   } catch (const DamagedImage& damage) {
     frame.damage = damage.what();
   }
