@@ -21,11 +21,16 @@ namespace stillmap {
 struct TrackingConfig {
   OrbConfig orb;
   TrackerConfig tracker;
+  bool smooth = true;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     OrbConfig::fields(self.orb, visit);
     TrackerConfig::fields(self.tracker, visit);
+    visit("smooth",
+          self.smooth,
+          FieldInfo{"whether the trajectory is smoothed at the end of a run, by each frame's "
+                    "information and the camera's likely acceleration"});
   }
 };
 

@@ -27,6 +27,7 @@ BackEnd::BackEnd(const SystemConfig& config,
                  const StageProbe& probe)
     : session_{camera, {}, Map(measure.level_scales()), {}, {}, {}},
       mapping_(config.mapping, camera, measure, {workers.mapping(), probe}),
+      smooths_(config.tracking.smooth),
       categories_(config.dynamics.objects.categories),
       dense_(resolved_cloud(config), camera, {workers.dense(), probe}),
       loops_(config.loop,
@@ -129,7 +130,7 @@ void BackEnd::refer_to_keyframe(std::size_t record, KeyframeId keyframe) {
 void BackEnd::finish() {
   apply_finished_work(kEnd);  // which may begin another adjustment
   loops_.finish(session_.map, main_submap(session_, first_frame_));
-  smooth();
+  if (smooths_) smooth();
 }
 
 // Smooths the trajectory of this run's frames, in each submap for itself.

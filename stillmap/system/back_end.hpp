@@ -103,6 +103,7 @@ class BackEnd {
   std::vector<ClosedLoop> closed_loops_;
 
   MappingStage mapping_;
+  bool smooths_;
   CategoryTable categories_;
   DenseStage dense_;
   LoopStage loops_;

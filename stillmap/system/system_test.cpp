@@ -3,6 +3,7 @@
 
 #include <set>
 
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 
@@ -81,6 +82,22 @@ TEST(System, FollowsARenderedCameraAndMapsItsRoom) {
   for (std::uint32_t k = 0; k < kFrames; ++k) {
     EXPECT_EQ(done.result.trajectory[k].stamp.text, room().sequence().stamp(FrameId(k)).text);
   }
+}
+
+TEST(System, ASmoothTrajectoryIsNearerToTheTruth) {
+  const auto error_m = [](bool smooth) {
+    SystemConfig config = static_world();
+    config.tracking.smooth = smooth;
+    System system(config, room().camera(), {.threads = 1});
+    for (std::uint32_t k = 0; k < kFrames; ++k) (void)system.process(room().frame(k));
+    const Trajectory trajectory = system.finish().trajectory;
+    return absolute_trajectory_error(room().sequence().ground_truth(), trajectory)
+        .value()
+        .translation_m.rmse;
+  };
+  const double rough = error_m(false), smooth = error_m(true);
+  fmt::print("{:.4f} m as tracked, {:.4f} m smoothed\n", rough, smooth);
+  EXPECT_LT(smooth, 0.9 * rough);
 }
 
 TEST(System, GivesTheSameBitsWithAnyNumberOfThreads) {
