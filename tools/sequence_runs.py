@@ -31,9 +31,9 @@ def parse(argument, further=()):
     return sequence
 
 
-def call(*arguments):
+def call(*arguments, program=PROGRAM):
     """Runs the program; its standard output."""
-    command = [str(PROGRAM), *map(str, arguments)]
+    command = [str(program), *map(str, arguments)]
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode not in (0, LOST_FOR_GOOD):
         raise Failure(f"{' '.join(command)}: {done.stderr.strip()}")
@@ -57,6 +57,27 @@ def run(sequence, mode, out, start=0, settings=()):
     if found["ate"]["rmse"] is None:
         raise Failure(f"{sequence['folder']}: no ground truth for the frames that were tracked")
     return found
+
+
+def evaluate_map(map_file, sequence_folder, trajectory, program=PROGRAM):
+    """The figures of a map against the truth of its sequence; `trajectory` is that of the run. None without a truth."""
+    folder = pathlib.Path(sequence_folder)
+    truth = folder / "truth"
+    if not (truth / "static_map.ply").is_file():
+        return None
+    command = ["evaluate", "map", map_file, "--static", truth / "static_map.ply", "--dynamic", truth / "dynamic_map.ply",
+               "--groundtruth", folder / "groundtruth.txt", "--trajectory", trajectory, "--json"]
+    if (truth / "resting_map.ply").is_file():
+        command += ["--resting", truth / "resting_map.ply"]
+    return json.loads(call(*command, program=program))["map"]
+
+
+def replace_file(path, text):
+    """Writes a text file under another name first, so that an interrupted one is not taken for the whole."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    partial = path.with_name(path.name + ".partial")
+    partial.write_text(text)
+    partial.replace(path)
 
 
 def median(values):

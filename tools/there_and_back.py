@@ -136,15 +136,16 @@ def write_detections(source, out, steps):
 
 def write(source, out, length=None, detections=None):
     """Writes a sequence of `length` frames (as many as `source` has unless given) into the new folder `out`, with
-    detections/ where a folder of them is given. No truth/ goes along, so that nothing is evaluated but the trajectory.
-    Returns the number of frames."""
+    detections/ where a folder of them is given. Of truth/ only objects.json goes along, which may tell the camera, so
+    that nothing is evaluated but the trajectory. Returns the number of frames."""
     source, out = pathlib.Path(source), pathlib.Path(out)
     frames = frames_of(source)
     steps = list(steps_of(frames, length or len(frames)))
     out.mkdir(parents=True)
     link_images(source, out, frames)
-    if (source / "camera.yaml").is_file():
-        link((source / "camera.yaml").resolve(), out / "camera.yaml")
+    for name in ("camera.yaml", "truth/objects.json"):
+        if (source / name).is_file():
+            link((source / name).resolve(), out / name)
     if (source / "groundtruth.txt").is_file():
         write_groundtruth(source, out, steps)
     if detections:
