@@ -3,9 +3,9 @@
 import html
 import math
 
-COLORS = ("#1f77b4", "#d62728", "#2ca02c", "#ff7f0e", "#9467bd", "#8c564b")
+COLORS = ("#1f77b4", "#d62728", "#2ca02c", "#ff7f0e", "#9467bd", "#8c564b", "#e377c2", "#555555", "#a6a61f", "#17becf")
 WIDTH, HEIGHT = 760, 320
-LEFT, TOP, RIGHT, BOTTOM = 60, 30, 10, 40
+LEFT, TOP, RIGHT, BOTTOM = 60, 30, 24, 40
 TICKS = 5
 
 

@@ -31,9 +31,9 @@ def parse(argument, further=()):
     return sequence
 
 
-def call(*arguments, program=PROGRAM):
+def call(*arguments, program=None):
     """Runs the program; its standard output."""
-    command = [str(program), *map(str, arguments)]
+    command = [str(program or PROGRAM), *map(str, arguments)]
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode not in (0, LOST_FOR_GOOD):
         raise Failure(f"{' '.join(command)}: {done.stderr.strip()}")
@@ -59,7 +59,7 @@ def run(sequence, mode, out, start=0, settings=()):
     return found
 
 
-def evaluate_map(map_file, sequence_folder, trajectory, program=PROGRAM):
+def evaluate_map(map_file, sequence_folder, trajectory, program=None):
     """The figures of a map against the truth of its sequence; `trajectory` is that of the run. None without a truth."""
     folder = pathlib.Path(sequence_folder)
     truth = folder / "truth"
