@@ -104,7 +104,7 @@ void map_keyframe(benchmark::State& state) {
   const std::vector<KeyframeId> core = mapping_core(simulated.map, newest, {});
   const Map window = simulated.map.window(core);
   for (auto iteration : state) {
-    benchmark::DoNotOptimize(map_locally(window, core, world().camera(), model(), {}));
+    benchmark::DoNotOptimize(map_locally(window, core, world().camera(), {}, model(), {}));
   }
   state.counters["landmarks"] = static_cast<double>(window.landmark_count());
 }

@@ -48,7 +48,7 @@ TEST_F(Freiburg1Xyz, ErrorBelowACentimetreAtFullAndHalfFrameRate) {
 
 TEST_F(Freiburg1Xyz, ErrorGrowsByHalfWithoutTheRollingShutter) {
   SystemConfig without;
-  without.tracking.tracker.shutter.calibrate = false;
+  without.tracking.shutter.calibrate = false;
   EXPECT_GT(measure(without, 1).ate_m, 1.5 * measure({}, 1).ate_m);
 }
 

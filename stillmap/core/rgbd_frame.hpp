@@ -14,7 +14,7 @@ namespace stillmap {
 struct RgbdFrame {
   FrameId id;                  ///< its position in the sequence
   Stamp stamp;                 ///< time of the colour image
-  double depth_stamp_s = 0.0;  ///< time of the depth image
+  double depth_stamp_s = 0.0;  ///< time of the depth image; 0: that of the colour image
   ColorImage color;            ///< red, green, blue
   GrayImage gray;              ///< brightness of `color`
   DepthImage depth;            ///< metres along the optical axis; 0 where it is missing

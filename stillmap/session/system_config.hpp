@@ -21,12 +21,14 @@ namespace stillmap {
 struct TrackingConfig {
   OrbConfig orb;
   TrackerConfig tracker;
+  ShutterConfig shutter;
   bool smooth = true;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     OrbConfig::fields(self.orb, visit);
     TrackerConfig::fields(self.tracker, visit);
+    visit.group("shutter", self.shutter);
     visit("smooth",
           self.smooth,
           FieldInfo{"whether the trajectory is smoothed at the end of a run, by each frame's "

@@ -3,15 +3,18 @@
 
 #include <algorithm>
 #include <map>
+#include <ranges>
 #include <utility>
 
 #include "stillmap/core/error.hpp"
 #include "stillmap/session/session_map.hpp"
+#include "stillmap/slam/optim/pose_time.hpp"
 #include "stillmap/slam/tracking/trajectory_smoother.hpp"
 
 namespace stillmap {
 namespace {
 
+constexpr double kAround_s = 0.07;  // frames so long before and after one tell its velocity
 constexpr std::int64_t kEnd = std::int64_t{1} << 62;  // after all frames and their due results
 
 CloudConfig resolved_cloud(const SystemConfig& config) {
@@ -26,6 +29,7 @@ BackEnd::BackEnd(const SystemConfig& config,
                  Workers& workers,
                  const StageProbe& probe)
     : session_{camera, {}, Map(measure.level_scales()), {}, {}, {}},
+      times_(config.tracking.shutter, camera),
       mapping_(config.mapping, camera, measure, {workers.mapping(), probe}),
       smooths_(config.tracking.smooth),
       categories_(config.dynamics.objects.categories),
@@ -64,14 +68,16 @@ Eigen::Isometry3d BackEnd::T_world_last() const {
 void BackEnd::apply_finished_work(std::int64_t frame_number) {
   const Eigen::Isometry3d T_before = T_world_last();
   const std::size_t loops_before = closed_loops_.size();
-  for (const MapUpdate& update : mapping_.collect_due(frame_number)) apply(update, frame_number);
+  for (const MappingResult& m : mapping_.collect_due(frame_number)) apply(m, frame_number);
   bool moved = closed_loops_.size() > loops_before;
   if (mapping_.idle()) moved = loops_.apply_due(session_.map, frame_number) || moved;
   if (moved) T_odometry_world_ = T_odometry_world_ * T_before * T_world_last().inverse();
   dense_.collect_due(session_, T_odometry_world_, frame_number);
 }
 
-void BackEnd::apply(const MapUpdate& update, std::int64_t frame_number) {
+void BackEnd::apply(const MappingResult& mapped, std::int64_t frame_number) {
+  const MapUpdate& update = mapped.update;
+  times_.add(mapped.times);
   Map& map = session_.map;
   map.apply(update);
   for (const auto& [dropped, anchor] : update.dropped_keyframes) loops_.remove_keyframe(dropped);
@@ -98,6 +104,7 @@ KeyframeId BackEnd::insert_keyframe(const RgbdFrame& frame,
                                     const TrackedFrame& tracked,
                                     std::int64_t frame_number) {
   Map& map = session_.map;
+  if (!map.keyframes().empty()) smooth_velocity(map.keyframes().rbegin()->second);
   Keyframe keyframe;
   keyframe.frame = frame.id;
   keyframe.stamp = frame.stamp;
@@ -108,10 +115,30 @@ KeyframeId BackEnd::insert_keyframe(const RgbdFrame& frame,
     keyframe.submap = map.keyframe(map.anchor(tracked.reference).keyframe).submap;
   }
   keyframe.T_world_camera = tracked.T_world_camera;
+  keyframe.timing = tracked.timing;
   keyframe.features = tracked.features;
-  const KeyframeId id = mapping_.insert(map, std::move(keyframe), tracked.landmarks, frame_number);
+  const KeyframeId id =
+      mapping_.insert(map, std::move(keyframe), tracked.landmarks, times(), frame_number);
   loops_.add_keyframe(map.keyframe(id));
   return id;
+}
+
+// The velocity of a key frame is that since the frame before it. The frames after it are known now:
+// that of all around it has a fifth of the noise.
+void BackEnd::smooth_velocity(const Keyframe& keyframe) {
+  const double stamp_s = keyframe.stamp.seconds;
+  std::vector<TimedMotion> motions;
+  for (const FrameRecord& frame : std::views::reverse(session_.frames)) {
+    const double after_s = frame.stamp.seconds - stamp_s;
+    if (after_s < -kAround_s) break;
+    if (after_s > kAround_s) continue;
+    motions.push_back(
+        {after_s, keyframe.T_world_camera.inverse() * T_world_frame(session_, frame)});
+  }
+  if (motions.size() < 3) return;
+  FrameTiming timing = keyframe.timing;
+  timing.smooth_velocity = fitted_velocity(motions);
+  session_.map.set_features(keyframe.id, keyframe.features, timing);
 }
 
 std::size_t BackEnd::record(const RgbdFrame& frame, const TrackedFrame& tracked) {
@@ -218,9 +245,9 @@ PointCloud BackEnd::map_with_poses(std::span<const std::optional<Eigen::Isometry
   return dense_.map_of(posed, objects, categories_, threads);
 }
 
-Session BackEnd::take_session(double readout_s, std::vector<KnownObject> objects) {
+Session BackEnd::take_session(std::vector<KnownObject> objects) {
   session_.objects = std::move(objects);
-  session_.camera.readout_s = readout_s;
+  session_.camera.readout_s = times().readout_s;
   return std::move(session_);
 }
 

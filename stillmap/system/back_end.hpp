@@ -37,6 +37,8 @@ class BackEnd {
 
   [[nodiscard]] const Map& map() const { return session_.map; }
   [[nodiscard]] const PlaceIndex& places() const { return loops_.places(); }
+  /// The times of the camera, as learnt so far.
+  [[nodiscard]] const CameraTimes& times() const { return times_.times(); }
   /// Loop corrections change T_world_camera; the odometry frame never jumps.
   [[nodiscard]] const Eigen::Isometry3d& T_odometry_world() const { return T_odometry_world_; }
   /// The camera's pose in a recorded frame, as the map has it now.
@@ -85,14 +87,15 @@ class BackEnd {
       std::size_t threads) const;
 
   /// The session to be saved, with the objects known. No other member may be called afterwards.
-  [[nodiscard]] Session take_session(double readout_s, std::vector<KnownObject> objects);
+  [[nodiscard]] Session take_session(std::vector<KnownObject> objects);
 
  private:
   [[nodiscard]] BackEnd inline_copy() const;
   [[nodiscard]] SubmapId result_submap() const;
   [[nodiscard]] Eigen::Isometry3d T_world_last() const;
-  void apply(const MapUpdate& update, std::int64_t frame_number);
+  void apply(const MappingResult& mapped, std::int64_t frame_number);
   void smooth();
+  void smooth_velocity(const Keyframe& keyframe);
 
   Session session_;
   std::size_t first_frame_ = 0;        // of this run in the session
@@ -102,6 +105,7 @@ class BackEnd {
   Eigen::Isometry3d T_odometry_world_ = Eigen::Isometry3d::Identity();
   std::vector<ClosedLoop> closed_loops_;
 
+  CameraTimesEstimator times_;
   MappingStage mapping_;
   bool smooths_;
   CategoryTable categories_;

@@ -24,6 +24,7 @@ MappingStage MappingStage::inline_copy() const {
 KeyframeId MappingStage::insert(Map& map,
                                 Keyframe keyframe,
                                 std::span<const LandmarkId> landmarks,
+                                const CameraTimes& times,
                                 std::int64_t frame_number) {
   const KeyframeId id = map.add_keyframe(std::move(keyframe));
   for (std::uint32_t i = 0; i < landmarks.size(); ++i) {
@@ -36,8 +37,8 @@ KeyframeId MappingStage::insert(Map& map,
 
   std::vector<KeyframeId> core = mapping_core(map, id, config_);
   auto window = std::make_shared<Map>(map.window(core));
-  jobs_.submit(frame_number + config_.lag_frames, [window, core = std::move(core), this] {
-    return map_locally(std::move(*window), core, camera_, measure_, config_);
+  jobs_.submit(frame_number + config_.lag_frames, [window, core = std::move(core), times, this] {
+    return map_locally(std::move(*window), core, camera_, times, measure_, config_);
   });
   return id;
 }

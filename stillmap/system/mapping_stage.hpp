@@ -30,10 +30,11 @@ class MappingStage {
   KeyframeId insert(Map& map,
                     Keyframe keyframe,
                     std::span<const LandmarkId> landmarks,
+                    const CameraTimes& times,
                     std::int64_t frame_number);
 
-  /// The updates that are due, in the order of their key frames.
-  [[nodiscard]] std::vector<MapUpdate> collect_due(std::int64_t frame_number) {
+  /// The results that are due, in the order of their key frames.
+  [[nodiscard]] std::vector<MappingResult> collect_due(std::int64_t frame_number) {
     return jobs_.collect_due(frame_number);
   }
   /// Whether no window of the map is being worked on.
@@ -43,7 +44,7 @@ class MappingStage {
   MappingConfig config_;
   CameraModel camera_;
   MeasurementModel measure_;
-  JobLedger<MapUpdate> jobs_;
+  JobLedger<MappingResult> jobs_;
 };
 
 }  // namespace stillmap

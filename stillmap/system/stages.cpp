@@ -92,6 +92,7 @@ PreparedFrame System::Stages::prepare(FramePtr frame, FrameObjects objects) cons
 void System::Stages::apply_finished_work() {
   begin_work(probe, Stage::kTracking);
   back_end.apply_finished_work(frame_number);
+  tracker.assume(back_end.times());
 }
 
 std::optional<Eigen::Isometry3d> System::Stages::expected_pose(const RgbdFrame& frame) const {
@@ -243,6 +244,7 @@ void System::Stages::take_objects(FrameObjects objects) {
   std::optional<LateObjects::Awaiting> awaiting = late_objects.take(objects.frame);
   if (!awaiting) return;
   back_end.apply_finished_work(frame_number);
+  tracker.assume(back_end.times());
   const RgbdFrame& frame = *awaiting->frame;
   awaiting->tracked.T_world_camera = back_end.T_world_camera(awaiting->record);
   const Eigen::Isometry3d T_odometry_camera =

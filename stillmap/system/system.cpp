@@ -99,8 +99,7 @@ void System::load(Session session) {
 
 Session System::take_session() {
   BackEnd& back_end = stages_->back_end;
-  return back_end.take_session(readout_s(),
-                               stages_->dynamics->known_objects(back_end.T_odometry_world()));
+  return back_end.take_session(stages_->dynamics->known_objects(back_end.T_odometry_world()));
 }
 
 const Map& System::map() const {
@@ -108,7 +107,11 @@ const Map& System::map() const {
 }
 
 double System::readout_s() const {
-  return stages_->tracker.readout_s();
+  return stages_->back_end.times().readout_s;
+}
+
+double System::depth_delay_s() const {
+  return stages_->back_end.times().depth_delay_s;
 }
 
 }  // namespace stillmap

@@ -97,6 +97,8 @@ class System {
   [[nodiscard]] const Map& map() const;
   /// Readout time of the camera's rolling shutter, seconds, as learnt so far.
   [[nodiscard]] double readout_s() const;
+  /// How much later than their stamps depth images are taken, seconds, as learnt so far.
+  [[nodiscard]] double depth_delay_s() const;
 
  private:
   struct Stages;

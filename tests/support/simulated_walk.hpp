@@ -71,7 +71,7 @@ class Walk {
   [[nodiscard]] const Map& map() const { return simulated_.map; }
   [[nodiscard]] const SimulatedMap& simulated() const { return simulated_; }
   [[nodiscard]] const TrackedFrame& first() const { return first_; }
-  [[nodiscard]] double readout_s() const { return tracker_.readout_s(); }
+  void assume(const CameraTimes& times) { tracker_.assume(times); }
   [[nodiscard]] static double time(int k) { return k * kFrameInterval_s; }
   [[nodiscard]] std::mt19937& rng() { return rng_; }
 
@@ -98,15 +98,9 @@ class Walk {
   std::mt19937 rng_{3};
 };
 
-inline TrackerConfig without_calibration() {
-  TrackerConfig config;
-  config.shutter.calibrate = false;
-  return config;
-}
-
 inline Tracker make_tracker() {
   const MeasurementModel measure(kMeasurement, Walk::world().level_scales());
-  return Tracker(without_calibration(), {}, simulated_camera(), measure, 0);
+  return Tracker({}, {}, simulated_camera(), measure, 0);
 }
 
 inline Eigen::Isometry3d path(double t) {

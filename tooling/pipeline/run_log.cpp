@@ -115,6 +115,7 @@ SequenceRun RunLog::finish(System& system) {
   }
   report.camera = stream_.camera();
   report.camera.readout_s = system.readout_s();
+  report.depth_delay_s = system.depth_delay_s();
   report.frames_tracked = result.trajectory.size();
   report.estimate = result.trajectory;
   report.keyframes = result.keyframes;

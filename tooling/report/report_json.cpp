@@ -30,7 +30,7 @@ Json distortion_json(const CameraModel& c) {
   return {c.k1, c.k2, c.p1, c.p2, c.k3};
 }
 
-Json camera_json(const CameraModel& camera) {
+Json camera_json(const CameraModel& camera, double depth_delay_s) {
   return {{"name", camera.name},
           {"width", camera.width_px},
           {"height", camera.height_px},
@@ -41,7 +41,8 @@ Json camera_json(const CameraModel& camera) {
           {"lens", camera.lens == LensModel::kFisheye ? "fisheye" : "brown_conrady"},
           {"distortion", distortion_json(camera)},
           {"depth_factor", camera.depth_factor},
-          {"readout_s", camera.readout_s}};
+          {"readout_s", camera.readout_s},
+          {"depth_delay_s", depth_delay_s}};
 }
 
 Json all_frames_json(const RunReport& report) {
@@ -176,7 +177,7 @@ Json text_or_null(const std::string& text) {
 std::string report_json(const RunReport& report) {
   const Json json = {{"version", report.version},
                      {"sequence", report.sequence},
-                     {"camera", camera_json(report.camera)},
+                     {"camera", camera_json(report.camera, report.depth_delay_s)},
                      {"frames", all_frames_json(report)},
                      {"tracking", tracking_json(report)},
                      {"keyframes", report.keyframes.size()},

@@ -58,10 +58,11 @@ struct LiveReport {
 /// All data of a run's reports. A plain value, filled by the code that runs the system. Unknown
 /// values stay empty: `nullopt`, or no elements.
 struct RunReport {
-  std::string version;      ///< of the program
-  std::string sequence;     ///< name or path of the sequence; any text
-  CameraModel camera;       ///< as used
-  std::string config_yaml;  ///< the effective configuration
+  std::string version;       ///< of the program
+  std::string sequence;      ///< name or path of the sequence; any text
+  CameraModel camera;        ///< as used
+  double depth_delay_s = 0;  ///< of depth images against their stamps, as learnt
+  std::string config_yaml;   ///< the effective configuration
 
   std::size_t frames_total = 0;       ///< associated rgb-depth pairs of the run
   std::size_t frames_tracked = 0;     ///< poses in the trajectory

@@ -231,6 +231,14 @@ void Map::join_submaps(SubmapId gone, SubmapId into, const Eigen::Isometry3d& T_
   }
 }
 
+void Map::set_features(KeyframeId id, FeaturesPtr features, const FrameTiming& timing) {
+  Keyframe& keyframe = keyframes_.at(id);
+  STILLMAP_CHECK(features->size() == keyframe.features->size());
+  keyframe.features = std::move(features);
+  keyframe.timing = timing;
+  changed_keyframes_.insert(id);
+}
+
 void Map::set_pose(KeyframeId id, const Eigen::Isometry3d& T_world_camera) {
   touch(id).T_world_camera = T_world_camera;
 }

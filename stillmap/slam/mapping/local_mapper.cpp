@@ -51,18 +51,21 @@ std::vector<KeyframeId> mapping_core(const Map& map,
   return core;
 }
 
-MapUpdate map_locally(Map window,
-                      const std::vector<KeyframeId>& core,
-                      const CameraModel& camera,
-                      const MeasurementModel& measure,
-                      const MappingConfig& config) {
+MappingResult map_locally(Map window,
+                          const std::vector<KeyframeId>& core,
+                          const CameraModel& camera,
+                          const CameraTimes& times,
+                          const MeasurementModel& measure,
+                          const MappingConfig& config) {
   const KeyframeId newest = core.front();
+  correct_times(window, core, camera, times);
   cull_young_landmarks(window, newest, config.culling);
   triangulate_landmarks(window, newest, camera, measure, config.creation);
   fuse_with_neighbors(window, core, camera, measure, config.fusion);
   adjust_map(window, core, camera, measure, config.bundle);
+  const TimeEvidence evidence = time_evidence_of(window, core, camera, measure);
   cull_redundant_keyframes(window, core, newest, measure, config.culling);
-  return window.take_changes();
+  return {window.take_changes(), evidence};
 }
 
 }  // namespace stillmap

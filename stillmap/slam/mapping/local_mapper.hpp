@@ -4,6 +4,7 @@
 #include "stillmap/core/fields.hpp"
 #include "stillmap/geometry/camera.hpp"
 #include "stillmap/slam/map/map.hpp"
+#include "stillmap/slam/mapping/camera_times.hpp"
 #include "stillmap/slam/mapping/culling.hpp"
 #include "stillmap/slam/mapping/landmark_creation.hpp"
 #include "stillmap/slam/mapping/landmark_fusion.hpp"
@@ -47,13 +48,21 @@ struct MappingConfig {
                                                    KeyframeId newest,
                                                    const MappingConfig& config);
 
-/// Local mapping around a new key frame: culls, triangulates and fuses landmarks with those of its
+/// What local mapping found.
+struct MappingResult {
+  MapUpdate update;
+  TimeEvidence times;
+};
+
+/// Local mapping around a new key frame: corrects the features of the core for the camera's times,
+/// culls, triangulates and fuses landmarks with those of its
 /// neighbours, adjusts poses and points, and drops redundant key frames. `window` is
 /// map.window(core). The job shares nothing with the owner of the map and may run on any thread.
-[[nodiscard]] MapUpdate map_locally(Map window,
-                                    const std::vector<KeyframeId>& core,
-                                    const CameraModel& camera,
-                                    const MeasurementModel& measure,
-                                    const MappingConfig& config);
+[[nodiscard]] MappingResult map_locally(Map window,
+                                        const std::vector<KeyframeId>& core,
+                                        const CameraModel& camera,
+                                        const CameraTimes& times,
+                                        const MeasurementModel& measure,
+                                        const MappingConfig& config);
 
 }  // namespace stillmap

@@ -140,7 +140,8 @@ TEST(MapLocally, GivesAConsistentAndBetterMap) {
     const MappingConfig config;
     const std::vector<KeyframeId> core = mapping_core(simulated.map, KeyframeId(7), config);
     simulated.map.apply(
-        map_locally(simulated.map.window(core), core, world().camera(), model(), config));
+        map_locally(simulated.map.window(core), core, world().camera(), {}, model(), config)
+            .update);
     simulated.map.check_consistency();
   }
   EXPECT_LT(keyframe_rmse_m(simulated), 0.3 * before_m);
@@ -155,7 +156,8 @@ TEST(MapLocally, IsTheSameForTheSameWindow) {
   MappingConfig config;
   const std::vector<KeyframeId> core = mapping_core(simulated.map, KeyframeId(5), config);
   const auto run = [&] {
-    return map_locally(simulated.map.window(core), core, world().camera(), model(), config);
+    return map_locally(simulated.map.window(core), core, world().camera(), {}, model(), config)
+        .update;
   };
   const MapUpdate a = run(), b = run();
   ASSERT_EQ(a.landmarks.size(), b.landmarks.size());
@@ -174,8 +176,10 @@ TEST(MapLocally, IsTheSameForTheSameWindow) {
 // Tracking and mapping together, as the system joins them, on features instead of images.
 class SmallSlam {
  public:
-  explicit SmallSlam(const TrackerConfig& config = {})
-      : simulated_(world()), tracker_(config, {}, world().camera(), model(), 0) {}
+  explicit SmallSlam(const ShutterConfig& config = {})
+      : simulated_(world()),
+        tracker_({}, {}, world().camera(), model(), 0),
+        times_(config, world().camera()) {}
 
   TrackedFrame process(std::uint32_t k, double time_s, const Observed& seen) {
     if (pending_ && k == due_) apply_pending();
@@ -194,7 +198,7 @@ class SmallSlam {
   }
 
   [[nodiscard]] const SimulatedMap& simulated() const { return simulated_; }
-  [[nodiscard]] double readout_s() const { return tracker_.readout_s(); }
+  [[nodiscard]] double readout_s() const { return times_.times().readout_s; }
 
  private:
   void count(const TrackedFrame& tracked) {
@@ -208,6 +212,7 @@ class SmallSlam {
     Observed as_tracked{*tracked.features, seen.points};
     const KeyframeId id =
         add_bare_keyframe(simulated_, tracked.T_world_camera, std::move(as_tracked));
+    simulated_.map.set_features(id, tracked.features, tracked.timing);
     for (std::uint32_t i = 0; i < tracked.landmarks.size(); ++i) {
       if (!tracked.landmarks[i].valid()) continue;
       simulated_.map.add_observation(tracked.landmarks[i], {id, i});
@@ -217,20 +222,24 @@ class SmallSlam {
     (void)simulated_.map.take_changes();
     tracker_.set_reference(id, simulated_.map);
     const std::vector<KeyframeId> core = mapping_core(simulated_.map, id, {});
-    pending_ = map_locally(simulated_.map.window(core), core, world().camera(), model(), {});
+    pending_ = map_locally(
+        simulated_.map.window(core), core, world().camera(), times_.times(), model(), {});
     due_ = k + 3;
     since_keyframe_ = {};
   }
 
   void apply_pending() {
-    simulated_.map.apply(*pending_);
+    simulated_.map.apply(pending_->update);
+    times_.add(pending_->times);
+    tracker_.assume(times_.times());
     pending_.reset();
     simulated_.map.check_consistency();
   }
 
   SimulatedMap simulated_;
   Tracker tracker_;
-  std::optional<MapUpdate> pending_;
+  CameraTimesEstimator times_;
+  std::optional<MappingResult> pending_;
   std::uint32_t due_ = 0;
   KeyframeAge since_keyframe_;
 };
@@ -280,15 +289,18 @@ TEST(MapLocally, WithTrackingBuildsATrueMapOfARoom) {
 }
 
 TEST(MapLocally, WithTrackingLearnsARollingShutterWhileTheMapGrows) {
-  // What is mapped before it is learnt is bent alike, so the first estimates are far too short:
-  // only if they are believed, too, does the map get straighter and the estimate right.
-  TrackerConfig on, off;
-  on.shutter.min_readout_s = 0;
-  off.shutter.calibrate = false;
+  ShutterConfig on, off;
+  off.calibrate = false;
   SmallSlam learning(on), ignorant(off);
   const FollowErrors with = follow(learning, 0.025), without = follow(ignorant, 0.025);
-  EXPECT_NEAR(learning.readout_s(), 0.025, 7e-3);
+  EXPECT_NEAR(learning.readout_s(), 0.025, 3e-3);
   EXPECT_LT(with.late_rmse_m, 0.7 * without.late_rmse_m);
+}
+
+TEST(MapLocally, WithTrackingFindsNoRollingShutterWhereThereIsNone) {
+  SmallSlam slam;
+  (void)follow(slam, 0);
+  EXPECT_EQ(slam.readout_s(), 0);
 }
 
 }  // namespace

@@ -2,12 +2,26 @@
 #include "stillmap/slam/tracking/tracker.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <unordered_set>
 
 #include "stillmap/slam/map/covisibility.hpp"
 #include "stillmap/slam/map/landmark_projection.hpp"
+#include "stillmap/slam/optim/pose_time.hpp"
 
 namespace stillmap {
+namespace {
+
+// Stamps of a pair that are further apart are of two clocks.
+constexpr double kMaxDepthStamp_s = 0.1;
+
+double depth_after_color_s(const RgbdFrame& frame) {
+  if (frame.depth_stamp_s == 0) return 0;
+  const double after_s = frame.depth_stamp_s - frame.stamp.seconds;
+  return std::abs(after_s) <= kMaxDepthStamp_s ? after_s : 0;
+}
+
+}  // namespace
 
 Tracker::Tracker(const TrackerConfig& config,
                  const RelocalizerConfig& relocalizer,
@@ -17,8 +31,7 @@ Tracker::Tracker(const TrackerConfig& config,
     : config_(config),
       relocalizer_(relocalizer, camera, measure, seed),
       camera_(camera),
-      measure_(std::move(measure)),
-      readout_(config.shutter, camera) {}
+      measure_(std::move(measure)) {}
 
 TrackedFrame Tracker::start(const RgbdFrame& frame, FeaturesPtr features) {
   TrackedFrame tracked;
@@ -51,6 +64,8 @@ TrackedFrame Tracker::track(const RgbdFrame& frame,
   TrackedFrame begun;
   begun.id = frame.id;
   begun.stamp_s = frame.stamp.seconds;
+  begun.timing.depth_stamp_s = depth_after_color_s(frame);
+  begun.timing.assumed = times_;
   if (last_) begun.reference = last_->reference;
   Attempt found = attempt(begun, std::move(features), map, places);
   if (more && found.inliers() < config_.enough_inliers) {
@@ -63,7 +78,7 @@ TrackedFrame Tracker::track(const RgbdFrame& frame,
     locate(found, relocalize(found.frame, found.features, map, places), map);
   }
   auto& [tracked, used, pose] = found;
-  if (pose && !lost_) pose = refine_shutter(tracked, used, *pose, map);
+  if (pose && !lost_) pose = refine_times(tracked, used, *pose, map);
   tracked.inliers = found.inliers();
   tracked.landmarks.assign(used.size(), LandmarkId{});
   tracked.features = std::make_shared<const Features>(std::move(used));
@@ -86,12 +101,12 @@ Tracker::Attempt Tracker::attempt(const TrackedFrame& frame,
                                   Features features,
                                   const Map& map,
                                   const PlaceIndex& places) const {
+  Attempt result{frame, std::move(features), std::nullopt};
   if (last_) {
     const double since_last_s = frame.stamp_s - last_->stamp_s;
-    const CameraVelocity expected = mean_velocity(motion_.predict(since_last_s), since_last_s);
-    features = undo_rolling_shutter(std::move(features), camera_, readout_s(), expected);
+    result.frame.timing.velocity = mean_velocity(motion_.predict(since_last_s), since_last_s);
+    result.features = at_pose_time(std::move(result.features), camera_, result.frame.timing);
   }
-  Attempt result{frame, std::move(features), std::nullopt};
   locate(
       result,
       lost_ ? relocalize(frame, result.features, map, places) : follow(frame, result.features, map),
@@ -135,24 +150,15 @@ std::optional<Tracker::PoseFromMatches> Tracker::relocalize(const TrackedFrame& 
 }
 
 // The features were corrected with the predicted velocity. Now the velocity is known.
-Tracker::PoseFromMatches Tracker::refine_shutter(const TrackedFrame& frame,
-                                                 Features& features,
-                                                 const PoseFromMatches& pose,
-                                                 const Map& map) {
-  const CameraVelocity velocity = mean_velocity(
-      last_pose(map).inverse() * pose.T_camera_world.inverse(), frame.stamp_s - last_->stamp_s);
-  features = undo_rolling_shutter(std::move(features), camera_, readout_s(), velocity);
-  PoseFromMatches refined = optimize(features, pose.T_camera_world, pose.inliers);
-
-  std::vector<PoseObservation> observations;
-  std::vector<double> rows;
-  for (const Match& match : refined.inliers) {
-    observations.push_back({match.p_world, measure_(features, match.feature)});
-    rows.push_back(static_cast<double>(features.raw_px[match.feature].y()) / camera_.height_px -
-                   0.5);
-  }
-  readout_.update(refined.T_camera_world, velocity, observations, rows);
-  return refined;
+Tracker::PoseFromMatches Tracker::refine_times(TrackedFrame& frame,
+                                               Features& features,
+                                               const PoseFromMatches& pose,
+                                               const Map& map) const {
+  frame.timing.velocity = mean_velocity(last_pose(map).inverse() * pose.T_camera_world.inverse(),
+                                        frame.stamp_s - last_->stamp_s);
+  frame.timing.smooth_velocity = frame.timing.velocity;
+  features = at_pose_time(std::move(features), camera_, frame.timing);
+  return optimize(features, pose.T_camera_world, pose.inliers);
 }
 
 void Tracker::set_reference(KeyframeId keyframe, const Map& map) {

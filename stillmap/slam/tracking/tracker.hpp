@@ -14,7 +14,6 @@
 #include "stillmap/slam/optim/pose_optimizer.hpp"
 #include "stillmap/slam/tracking/motion_model.hpp"
 #include "stillmap/slam/tracking/relocalizer.hpp"
-#include "stillmap/slam/tracking/rolling_shutter.hpp"
 #include "stillmap/slam/tracking/tracked_frame.hpp"
 
 namespace stillmap {
@@ -31,7 +30,6 @@ struct TrackerConfig {
   MatchRules frame_match{.max_distance = 90};
   MatchRules reference_match{.max_distance = 60, .max_ratio = 0.7};
   MatchRules map_match{.max_distance = 90, .max_ratio = 0.8};
-  ShutterConfig shutter;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -64,7 +62,6 @@ struct TrackerConfig {
     visit.group("frame_match", self.frame_match);
     visit.group("reference_match", self.reference_match);
     visit.group("map_match", self.map_match);
-    visit.group("shutter", self.shutter);
     visit("enough_inliers",
           self.enough_inliers,
           FieldInfo{
@@ -127,8 +124,8 @@ class Tracker {
   [[nodiscard]] std::optional<Eigen::Isometry3d> expected_pose(double stamp_s,
                                                                const Map& map) const;
 
-  /// The present estimate of the readout time of the camera's rolling shutter.
-  [[nodiscard]] double readout_s() const { return readout_.readout_s(); }
+  /// Tells the tracker the times of the camera, for which it corrects features from now on.
+  void assume(const CameraTimes& times) { times_ = times; }
 
   /// Tells the tracker that the last frame has become a key frame of the map.
   void set_reference(KeyframeId keyframe, const Map& map);
@@ -179,10 +176,10 @@ class Tracker {
                                                 const Features& features,
                                                 const PoseFromMatches& start,
                                                 const Map& map) const;
-  [[nodiscard]] PoseFromMatches refine_shutter(const TrackedFrame& frame,
-                                               Features& features,
-                                               const PoseFromMatches& pose,
-                                               const Map& map);
+  [[nodiscard]] PoseFromMatches refine_times(TrackedFrame& frame,
+                                             Features& features,
+                                             const PoseFromMatches& pose,
+                                             const Map& map) const;
   [[nodiscard]] std::vector<LandmarkId> local_landmarks(TrackedFrame& frame,
                                                         const Matches& matches,
                                                         const Map& map) const;
@@ -202,7 +199,7 @@ class Tracker {
   std::optional<TrackedFrame> last_;  // the last frame with a pose
   Eigen::Isometry3d T_reference_last_ = Eigen::Isometry3d::Identity();
   MotionModel motion_;
-  ReadoutEstimator readout_;
+  CameraTimes times_;
   bool lost_ = true;
 };
 

@@ -21,7 +21,7 @@ Features part_of(const Features& features, std::size_t every, bool others) {
 TEST(Tracker, UsesDoubtedFeaturesWhereTheOthersAreTooFew) {
   constexpr std::size_t kEvery = 50;  // leaves less than min_inliers
   for (const bool may : {true, false}) {
-    Walk walk(path, without_calibration());
+    Walk walk(path, {});
     int tracked = 0;
     for (int k = 1; k <= 30; ++k) {
       const Features seen = walk.observe(k, kNoise).features;
@@ -44,7 +44,7 @@ TEST(Tracker, UsesDoubtedFeaturesWhereTheOthersAreTooFew) {
 TEST(Tracker, TakesNoPoseThatTheTrustedFeaturesContradict) {
   std::vector<double> worst;
   for (const double confirmed_share : {TrackerConfig{}.confirmed_share, 0.0}) {
-    TrackerConfig config = without_calibration();
+    TrackerConfig config = {};
     config.confirmed_share = confirmed_share;
     Walk walk(path, config);
     double worst_m = 0;

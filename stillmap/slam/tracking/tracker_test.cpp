@@ -11,7 +11,7 @@ namespace stillmap {
 namespace {
 
 TEST(Tracker, FollowsASmoothPathAsWellAsTheNoiseAllows) {
-  Walk walk(path, without_calibration());
+  Walk walk(path, {});
   EXPECT_EQ(walk.first().status, TrackingStatus::kInitialized);
   double normalized = 0;
   constexpr int kFrames = 150;
@@ -35,7 +35,7 @@ TEST(Tracker, FollowsASmoothPathAsWellAsTheNoiseAllows) {
 }
 
 TEST(Tracker, ExpectsTheLandmarksThatItFindsAndReadsTheMapOnly) {
-  Walk walk(path, without_calibration());
+  Walk walk(path, {});
   const TrackedFrame frame = walk.track(1, walk.observe(1, kNoise).features);
   const std::set<LandmarkId> expected(frame.expected.begin(), frame.expected.end());
   EXPECT_EQ(expected.size(), frame.expected.size());
@@ -50,7 +50,7 @@ TEST(Tracker, ExpectsTheLandmarksThatItFindsAndReadsTheMapOnly) {
 }
 
 TEST(Tracker, StandsFortyPercentOfWrongDescriptors) {
-  Walk walk(path, without_calibration());
+  Walk walk(path, {});
   ObservationNoise noise = kNoise;
   noise.wrong_descriptor_share = 0.4;
   double normalized = 0;
@@ -87,7 +87,7 @@ TEST(Tracker, FollowsAPatternWhoseCornersLookAlike) {
 }
 
 TEST(Tracker, StandsThirtyPercentOfMatchesThatMoved) {
-  Walk walk(path, without_calibration());
+  Walk walk(path, {});
   for (int k = 1; k <= 60; ++k) {
     Features features = walk.observe(k, kNoise).features;
     for (std::size_t i = 0; i < features.size(); ++i) {
@@ -102,7 +102,7 @@ TEST(Tracker, StandsThirtyPercentOfMatchesThatMoved) {
 }
 
 TEST(Tracker, IsMarkedLostWithoutFeaturesAndFindsBack) {
-  Walk walk(path, without_calibration());
+  Walk walk(path, {});
   for (int k = 1; k <= 40; ++k) {
     const bool dark = k > 20 && k <= 30;
     const Observed seen = dark ? Observed{} : walk.observe(k, kNoise);
@@ -119,7 +119,7 @@ TEST(Tracker, IsMarkedLostWithoutFeaturesAndFindsBack) {
 }
 
 TEST(Tracker, FindsBackAtAnotherPlaceThanWhereItWasLost) {
-  Walk walk(path, without_calibration());
+  Walk walk(path, {});
   for (int k = 1; k <= 5; ++k) (void)walk.track(k, walk.observe(k, kNoise).features);
   ASSERT_EQ(walk.track(6, {}).status, TrackingStatus::kLost);
   // Two seconds later, although the stamps do not say so: constant velocity does not lead there.
@@ -222,49 +222,23 @@ TEST(Tracker, UsesALandmarkOnceInAFrame) {
   }
 }
 
-struct ShutterRun {
-  double rmse_m = 0;
-  double readout_s = 0;
-};
-
-// The second half of 240 frames, when the readout has been learnt.
-ShutterRun run_shutter(double readout_s, bool calibrate, double speed) {
-  TrackerConfig config;
-  config.shutter.calibrate = calibrate;
-  Walk walk([=](double t) { return swinging(t, speed); }, config, readout_s);
+// The error of the later half of 240 poses with a rolling shutter of 30 ms, for which the tracker
+// corrects features as for `assumed_s`.
+double rolling_rmse_m(double assumed_s) {
+  Walk walk(path, {}, 0.03);
+  walk.assume({assumed_s, 0});
   double sum = 0;
-  int count = 0;
   for (int k = 1; k <= 240; ++k) {
     const TrackedFrame frame = walk.track(k, walk.observe(k, kNoise).features);
     EXPECT_EQ(frame.status, TrackingStatus::kTracked) << k;
-    if (k <= 120) continue;
-    sum += walk.error_m(frame) * walk.error_m(frame);
-    ++count;
+    EXPECT_EQ(frame.timing.assumed.readout_s, assumed_s);
+    if (k > 120) sum += walk.error_m(frame) * walk.error_m(frame) / 120;
   }
-  return {std::sqrt(sum / count), walk.readout_s()};
+  return std::sqrt(sum);
 }
 
-TEST(Tracker, LearnsTheRollingShutterAndIsMuchBetterForIt) {
-  const ShutterRun with = run_shutter(0.03, true, 1.0), without = run_shutter(0.03, false, 1.0);
-  EXPECT_NEAR(with.readout_s, 0.03, 2e-3);
-  EXPECT_EQ(without.readout_s, 0);
-  EXPECT_LT(with.rmse_m, 0.3 * without.rmse_m);
-}
-
-TEST(Tracker, FindsNoRollingShutterWhereThereIsNone) {
-  const ShutterRun run = run_shutter(0, true, 1.0);
-  EXPECT_LT(run.readout_s, 1.5e-3);
-}
-
-TEST(Tracker, KeepsTheReadoutWhileTheCameraStands) {
-  // It moves for 4 s, stands for 10 s.
-  TrackerConfig config;
-  const CameraPath then_stands = [](double t) { return swinging(std::min(t, 4.0)); };
-  Walk walk(then_stands, config, 0.03);
-  for (int k = 1; k <= 420; ++k) {
-    (void)walk.track(k, walk.observe(k, kNoise).features);
-  }
-  EXPECT_NEAR(walk.readout_s(), 0.03, 2e-3);
+TEST(Tracker, IsMuchBetterForKnowingTheRollingShutter) {
+  EXPECT_LT(rolling_rmse_m(0.03), 0.3 * rolling_rmse_m(0));
 }
 
 }  // namespace

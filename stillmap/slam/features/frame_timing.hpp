@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+
+#include "stillmap/geometry/camera.hpp"
+#include "stillmap/geometry/camera_velocity.hpp"
+
+namespace stillmap {
+
+/// When a camera takes its images.
+struct CameraTimes {
+  /// Of a rolling shutter: from the first row of a colour image to the last; 0 = global shutter.
+  double readout_s = 0;
+  /// How much later than its stamp a depth image is taken; negative: earlier. A stamp that is late
+  /// itself looks the same.
+  double depth_delay_s = 0;
+};
+
+/// What brings the features of a frame to one time, that of its pose.
+struct FrameTiming {
+  CameraVelocity velocity;   ///< that the features are corrected for; zero where unknown
+  CameraVelocity smooth_velocity;  ///< by the frames around, later; `velocity` until then
+  double depth_stamp_s = 0;  ///< of the depth image, after that of the colour image
+  CameraTimes assumed;       ///< the times that the features are corrected for
+
+  [[nodiscard]] double depth_after_color_s() const {
+    return depth_stamp_s + assumed.depth_delay_s;
+  }
+};
+
+/// The position of a raw pixel's row, in image heights from the middle row: -1/2 to 1/2.
+[[nodiscard]] inline double row_position(const Eigen::Vector2f& raw_px, const CameraModel& camera) {
+  return static_cast<double>(raw_px.y()) / camera.height_px - 0.5;
+}
+
+}  // namespace stillmap

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/slam/mapping/camera_times.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include <Eigen/LU>
+
+#include "stillmap/slam/mapping/map_problem.hpp"
+#include "stillmap/slam/optim/pose_time.hpp"
+
+namespace stillmap {
+namespace {
+
+constexpr double kSignificant = 4;         // standard deviations
+constexpr double kNegligible_s = 1e-3;     // 0.4 mm at 0.4 m/s
+constexpr double kForgetting = 1.0 / 20;   // of earlier windows, per window: as many key frames as
+                                           // a window has
+constexpr double kLeastCondition = 1e-12;  // of the information
+
+bool is_known(const FrameTiming& timing) {
+  return timing.velocity.linear.squaredNorm() + timing.velocity.angular.squaredNorm() > 0;
+}
+
+bool differs(const CameraTimes& a, const CameraTimes& b) {
+  return std::abs(a.readout_s - b.readout_s) > kNegligible_s ||
+         std::abs(a.depth_delay_s - b.depth_delay_s) > kNegligible_s;
+}
+
+double believed(double estimate, double sigma, double stated) {
+  const double least = std::max(kSignificant * sigma, kNegligible_s);
+  return std::abs(estimate - stated) > least ? estimate : stated;
+}
+
+}  // namespace
+
+TimeEvidence time_evidence_of(const Map& window,
+                              std::span<const KeyframeId> core,
+                              const CameraModel& camera,
+                              const MeasurementModel& measure) {
+  MapProblem made = make_problem(window, {core.begin(), core.end()}, camera, measure);
+  TimedBundle bundle{std::move(made.problem), {}, {}};
+  for (const KeyframeId id : made.keyframes) bundle.timing.push_back(window.keyframe(id).timing);
+  for (std::size_t i = 0; i < made.features.size(); ++i) {
+    const Keyframe& keyframe =
+        window.keyframe(made.keyframes[bundle.problem.observations[i].camera]);
+    bundle.row.push_back(row_position(keyframe.features->raw_px[made.features[i]], camera));
+  }
+  return time_evidence(bundle);
+}
+
+void correct_times(Map& window,
+                   std::span<const KeyframeId> core,
+                   const CameraModel& camera,
+                   const CameraTimes& times) {
+  for (const KeyframeId id : core) {
+    const Keyframe& keyframe = window.keyframe(id);
+    if (!is_known(keyframe.timing) || !differs(keyframe.timing.assumed, times)) continue;
+    FrameTiming timing = keyframe.timing;
+    timing.assumed = times;
+    window.set_features(
+        id,
+        std::make_shared<const Features>(at_pose_time(*keyframe.features, camera, timing)),
+        timing);
+  }
+}
+
+CameraTimesEstimator::CameraTimesEstimator(const ShutterConfig& config, const CameraModel& camera)
+    : config_(config),
+      stated_{std::min(camera.readout_s, config.max_readout_s), 0},
+      times_(stated_) {}
+
+void CameraTimesEstimator::add(const TimeEvidence& window) {
+  if (!config_.calibrate) return;
+  sum_.information = (1 - kForgetting) * sum_.information + window.information;
+  sum_.vector = (1 - kForgetting) * sum_.vector + window.vector;
+  windows_ = (1 - kForgetting) * windows_ + 1;
+  Eigen::Matrix2d covariance;
+  bool invertible = false;
+  sum_.information.computeInverseWithCheck(covariance, invertible, kLeastCondition);
+  if (!invertible || !covariance.allFinite()) return;
+  const Eigen::Vector2d estimate = covariance * sum_.vector;
+  const Eigen::Vector2d sigma = (windows_ * covariance.diagonal()).cwiseMax(0).cwiseSqrt();
+  times_.readout_s = std::clamp(
+      believed(estimate(0), sigma(0), stated_.readout_s), 0.0, config_.max_readout_s);
+  times_.depth_delay_s = std::clamp(believed(estimate(1), sigma(1), stated_.depth_delay_s),
+                                    -config_.max_depth_delay_s,
+                                    config_.max_depth_delay_s);
+}
+
+}  // namespace stillmap

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "stillmap/geometry/camera.hpp"
+#include "stillmap/slam/features/features.hpp"
+#include "stillmap/slam/features/frame_timing.hpp"
+
+namespace stillmap {
+
+/// Moves each feature (pixel and depth) to its position at the readout of the middle row, the time
+/// to which poses refer.
+///
+/// A rolling shutter reads an image row by row while the camera moves: at 0.4 m/s and 1 m distance,
+/// 25 ms from the first row to the last shift the top against the bottom of a Kinect's image by 5
+/// pixels. A depth image that is taken later than the colour image has the depths of another time.
+/// Features without depth are only rotated.
+[[nodiscard]] Features at_pose_time(Features features,
+                                    const CameraModel& camera,
+                                    const FrameTiming& timing);
+
+}  // namespace stillmap
