@@ -11,7 +11,7 @@
 namespace stillmap {
 namespace {
 
-constexpr std::size_t kPart = 1000;       // frames that are smoothed together
+constexpr std::size_t kPart = 1000;          // frames that are smoothed together
 constexpr std::int64_t kPartLagFrames = 30;  // its work is far shorter
 
 /// Consecutive frames of one submap, and their records.
@@ -75,8 +75,7 @@ void SmoothingStage::process(Session& session, std::int64_t frame_number) {
                    const std::vector<Eigen::Isometry3d> poses = smooth_trajectory(part.measured);
                    for (std::size_t i = 0; i < poses.size(); ++i) {
                      const Eigen::Isometry3d& T_world_before = part.measured[i].T_world_camera;
-                     corrections.push_back(
-                         {part.records[i], T_world_before.inverse() * poses[i]});
+                     corrections.push_back({part.records[i], T_world_before.inverse() * poses[i]});
                    }
                  }
                  return corrections;
