@@ -23,7 +23,7 @@ set(stillmap_slow_tests_scene choreography=9 office=4)
 set(stillmap_slow_tests_segmentation segmenter=3)
 set(stillmap_slow_tests_session session_damage=3)
 set(stillmap_slow_tests_synth detection_faults=9 sequence=15 sequence_writer=7 truth_maps=2)
-set(stillmap_slow_tests_system growth=30 loop_session=80 merge_tree=7 stages=40 system=40)
+set(stillmap_slow_tests_system growth=34 loop_session=80 merge_tree=7 stages=40 system=40)
 set(stillmap_slow_tests_tracking tracker=9)
 set(stillmap_slow_tests_view view_server=3)
 

@@ -43,7 +43,7 @@ void identify(std::string_view bytes) {
   for (Tensor& output : outputs) {
     output.shape = numbers.shape();
     const std::int64_t count = element_count(output.shape);
-    if (count < 0 || count > 200000) return;
+    if (count < 0 || count > 20000) return;
     const int low = numbers.byte(), step = numbers.byte();
     for (std::int64_t i = 0; i < count; ++i) {
       output.values.push_back(static_cast<float>((low + i * step) % 256) / 16.F - 4.F);

@@ -2,10 +2,14 @@
 // make_corpus FOLDER: valid inputs for all fuzzers but that of sessions, in a folder for each. They
 // are made here, because many are large and none is precious.
 #include <random>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/core.h>
 
 #include "stillmap/config/config_io.hpp"
+#include "stillmap/core/append_bytes.hpp"
 #include "stillmap/io/atomic_file.hpp"
 #include "stillmap/io/image_io.hpp"
 #include "stillmap/io/ply.hpp"
@@ -82,11 +86,99 @@ void write_texts(const fs::path& folder) {
          "\n"});
 }
 
+// Files of an input of the fuzzer of layouts.
+std::string layout(const std::vector<std::pair<std::string, std::string>>& files) {
+  std::string text;
+  for (const auto& [name, content] : files) text += name + "\n" + content + "----\n";
+  return text;
+}
+
+void write_layouts(const fs::path& folder) {
+  const std::string color = encode_png(random_color(4, 3));
+  const std::string depth = encode_depth_png(DepthImage(cv::Mat1f(3, 4, 1.5F)), 1000);
+  const std::string pose = "1 0 0 0\n0 1 0 0\n0 0 1 0.5\n0 0 0 1\n";
+  const std::string intrinsics = "20 0 7.5 0\n0 21 5.25 0\n0 0 1 0\n0 0 0 1\n";
+  const std::string csv = "#timestamp [ns],filename\n1000000000,1.png\n2000000000,2.png\n";
+  const std::string sensor =
+      "sensor_type: camera\nT_BS:\n  cols: 4\n  rows: 4\n  data: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, "
+      "0, 0, 0, 0, 1]\nresolution: [4, 3]\ncamera_model: pinhole\nintrinsics: [4, 4, 2, 1.5]\n"
+      "distortion_model: radial-tangential\ndistortion_coefficients: [0, 0, 0, 0]\n";
+  std::string right = sensor;
+  right.replace(right.find("[1, 0, 0, 0"), 11, "[1, 0, 0, 0.1");
+  write(folder,
+        "layouts",
+        {layout({{"frame-000000.color.png", color},
+                 {"frame-000000.depth.png", depth},
+                 {"frame-000000.pose.txt", pose}}),
+         layout({{"color/0.png", color},
+                 {"depth/0.png", depth},
+                 {"pose/0.txt", pose},
+                 {"intrinsic/intrinsic_depth.txt", intrinsics}}),
+         layout({{"color/000000.png", color},
+                 {"depth/000000.png", depth},
+                 {"camera_intrinsic.json",
+                  R"({"width":4,"height":3,"intrinsic_matrix":[20,0,0,0,21,0,7.5,5.25,1]})"},
+                 {"trajectory.log", "0 0 1\n" + pose}}),
+         layout({{"associations.txt", "1 depth/1.png 1 rgb/1.png\n2 depth/2.png 2 rgb/2.png\n"},
+                 {"living.gt.freiburg", "1 0 0 0 0 0 0 1\n2 0 0 1 0 0 0 1\n"}}),
+         layout({{"cam0/data.csv", csv},
+                 {"cam0/sensor.yaml", sensor},
+                 {"cam0/data/1.png", color},
+                 {"cam1/data.csv", csv},
+                 {"cam1/sensor.yaml", right},
+                 {"cam1/data/1.png", color},
+                 {"state_groundtruth_estimate0/data.csv",
+                  "#timestamp,p,q\n1000000000,0,0,0,1,0,0,0\n2000000000,0,0,1,1,0,0,0\n"}}),
+         layout({{"calib.txt", "P0: 4 0 2 0 0 4 1.5 0 0 0 1 0\nP1: 4 0 2 -2 0 4 1.5 0 0 0 1 0\n"},
+                 {"times.txt", "0.0\n0.1\n"},
+                 {"image_0/000000.png", color},
+                 {"image_1/000000.png", color},
+                 {"poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 1\n"}})});
+}
+
+// Little endian, as messages of ROS are.
+std::string u32(std::uint32_t value) {
+  std::string bytes;
+  append_bytes(bytes, value);
+  return bytes;
+}
+
+std::string ros_text(const std::string& text) {
+  return u32(static_cast<std::uint32_t>(text.size())) + text;
+}
+
+void write_ros_messages(const fs::path& folder) {
+  const std::string header = u32(7) + u32(1500000000) + u32(250000000) + ros_text("camera");
+  const auto image = [&](const std::string& encoding, std::uint32_t row, std::size_t size) {
+    return header + u32(3) + u32(4) + ros_text(encoding) + '\0' + u32(row) +
+           ros_text(std::string(size, 'x'));
+  };
+  std::string info = header + u32(480) + u32(640) + ros_text("plumb_bob") + u32(5);
+  for (const double value :
+       {0.1,   0.2, 0.0,   0.0, 0.0,                            // D
+        500.0, 0.0, 320.0, 0.0, 500.0, 240.0, 0.0,   0.0, 1.0,  // K
+        1.0,   0.0, 0.0,   0.0, 1.0,   0.0,   0.0,   0.0, 1.0,  // R
+        500.0, 0.0, 320.0, 0.0, 0.0,   500.0, 240.0, 0.0, 0.0, 0.0, 1.0, 0.0}) {
+    append_bytes(info, value);
+  }
+  const std::string png = encode_png(random_color(4, 3));
+  write(folder,
+        "ros_message",
+        {image("rgb8", 12, 36),
+         image("mono16", 8, 24),
+         image("32FC1", 16, 48),
+         header + ros_text("rgb8; png compressed bgr8") + ros_text(png),
+         info + std::string(25, '\0'),
+         std::string("\0\0\x80\x3f", 4)});
+}
+
 }  // namespace
 
 void write_corpus(const fs::path& folder) {
   write_images(folder);
   write_texts(folder);
+  write_layouts(folder);
+  write_ros_messages(folder);
   write(folder,
         "ply",
         {encode_ply(some_points()), encode_ply(some_points(), PlyFormat::kAscii), encode_ply({})});

@@ -251,7 +251,7 @@ class Soak(unittest.TestCase):
         self.assertAlmostEqual(figures["mb_per_10000_frames"], 2.0)
         self.assertEqual(wrong, ["memory grows by 2.00 MB in 10,000 frames"])
         self.assertEqual(soak.judged(self.readings(slower=2.0))[1], ["a frame takes 20.00 ms at the end, 10.00 at first"])
-        self.assertEqual(soak.judged(self.readings(handles=1))[1], ["10 handles are open, 9 at first"])
+        self.assertEqual(soak.judged(self.readings(handles=1))[1], ["10 handles stay open, 9 at first"])
 
 
 class Compare(Folder):

@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -13,12 +14,22 @@ namespace stillmap {
 /// with 2. An expected outcome (tracking lost, no match) is a value, never an Error.
 class Error : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  /// The text, in which a blank replaces each control character: messages quote files from outside.
+  explicit Error(std::string text) : std::runtime_error(one_line(std::move(text))) {}
 
   /// The text is that of fmt::format(format, args...).
   template <class... Args>
   explicit Error(fmt::format_string<Args...> format, Args&&... args)
-      : std::runtime_error(fmt::format(format, std::forward<Args>(args)...)) {}
+      : Error(fmt::format(format, std::forward<Args>(args)...)) {}
+
+ private:
+  static std::string one_line(std::string text) {
+    for (char& c : text) {
+      const auto byte = static_cast<unsigned char>(c);
+      if (byte < 0x20 || byte == 0x7F) c = ' ';
+    }
+    return text;
+  }
 };
 
 /// An exception for a programming mistake in this library. Thrown by STILLMAP_CHECK; the program

@@ -10,6 +10,8 @@ namespace {
 
 constexpr std::size_t kSamples = 512;      // of the view
 constexpr std::size_t kHeldSamples = 128;  // of each view held
+constexpr std::size_t kLossSamples = 64;   // of each view that may go
+constexpr int kFew = 5;                    // views: what fewer see may be lost with one of them
 
 /// A sample of a view's points, in the world frame.
 std::vector<Eigen::Vector3f> samples(const PosedView& posed, std::size_t most) {
@@ -26,6 +28,12 @@ std::vector<Eigen::Vector3f> samples(const PosedView& posed, std::size_t most) {
 struct Known {
   Sightings told;
   int from_near = 0;  // number of views that see it from near enough
+};
+
+/// How many of the new view's points another view sees.
+struct Overlap {
+  std::size_t seen = 0;
+  std::size_t alike = 0;  // of these, those that it sees from about as far
 };
 
 void count(Known& known, const Sightings& one, bool is_near) {
@@ -51,12 +59,22 @@ class Comparison {
     plain_.weakly_seen = -1;  // motion beside points matters for the map, not here
   }
 
-  /// `news.unknown` and `news.came`.
-  void look_at(const PosedView& view, std::span<const PosedView> held, ViewGain& news) const {
+  /// `news.unknown` and `news.came`. Returns the views held that see half of the view from about as
+  /// far, if many see half of it at all.
+  [[nodiscard]] std::vector<PosedView> look_at(const PosedView& view,
+                                               std::span<const PosedView> held,
+                                               ViewGain& news) const {
     const std::vector<Eigen::Vector3f> points = samples(view, kSamples);
-    if (points.empty()) return;
+    if (points.empty()) return {};
     std::vector<Known> known(points.size());
-    for (const PosedView& other : held) ask(other, view, points, known);
+    std::vector<PosedView> alike;
+    int overlapping = 0;
+    for (const PosedView& other : held) {
+      const Overlap overlap = ask(other, view, points, known);
+      overlapping += 2 * overlap.seen >= points.size() ? 1 : 0;
+      if (2 * overlap.alike >= points.size()) alike.push_back(other);
+    }
+    if (overlapping < config_.most) alike.clear();
     int unknown = 0, came = 0;
     for (const Known& k : known) {
       unknown += k.from_near < config_.enough ? 1 : 0;
@@ -64,6 +82,32 @@ class Comparison {
     }
     news.unknown = unknown / static_cast<double>(points.size());
     news.came = came / static_cast<double>(points.size());
+    return alike;
+  }
+
+  /// The one of some views held that shows the least which few others show, the new view included;
+  /// the earliest of equals. Null for none.
+  [[nodiscard]] const StaticView* least_needed(std::span<const PosedView> some,
+                                               std::span<const PosedView> held,
+                                               const PosedView& view) const {
+    const StaticView* least = nullptr;
+    double least_loss = 2;
+    for (const PosedView& one : some) {
+      const std::vector<Eigen::Vector3f> points = samples(one, kLossSamples);
+      if (points.empty()) return one.view;
+      std::vector<Known> known(points.size());
+      (void)ask(view, one, points, known);
+      for (const PosedView& other : held) {
+        if (other.view != one.view) (void)ask(other, one, points, known);
+      }
+      const auto lost =
+          std::ranges::count_if(known, [](const Known& k) { return k.from_near < kFew; });
+      const double loss = static_cast<double>(lost) / static_cast<double>(points.size());
+      if (loss >= least_loss) continue;
+      least_loss = loss;
+      least = one.view;
+    }
+    return least;
   }
 
   /// `news.went`.
@@ -95,18 +139,24 @@ class Comparison {
   }
 
   /// Adds the sightings of another view's points by one view.
-  void ask(const PosedView& other,
-           const PosedView& view,
-           std::span<const Eigen::Vector3f> points,
-           std::span<Known> known) const {
+  Overlap ask(const PosedView& other,
+              const PosedView& view,
+              std::span<const Eigen::Vector3f> points,
+              std::span<Known> known) const {
     const Eigen::Vector3f here = view.T_world_camera.translation().cast<float>();
     const Eigen::Vector3f there = other.T_world_camera.translation().cast<float>();
     const auto nearer = static_cast<float>(config_.nearer);
     const std::vector<Sightings> told = tell(other, points);
+    Overlap overlap;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const bool is_near = (points[i] - there).norm() <= nearer * (points[i] - here).norm();
+      const float its_m = (points[i] - there).norm(), own_m = (points[i] - here).norm();
+      const bool is_near = its_m <= nearer * own_m;
       count(known[i], told[i], is_near);
+      if (told[i].seen == 0) continue;
+      ++overlap.seen;
+      overlap.alike += is_near && own_m <= nearer * its_m ? 1 : 0;
     }
+    return overlap;
   }
 
   const CameraModel& camera_;
@@ -128,10 +178,13 @@ ViewGain gain_of(const PosedView& view,
   }
   ViewGain news;
   const Comparison comparison(camera, config, free_space);
-  comparison.look_at(view, with_range, news);
+  const std::vector<PosedView> alike = comparison.look_at(view, with_range, news);
   const bool joins_anyway = is_worth_keeping(news, config);
   if (!joins_anyway && !view.view->range.cells.empty()) {
     comparison.look_through(view, with_range, news);
+  }
+  if (is_worth_keeping(news, config)) {
+    news.replaces = comparison.least_needed(alike, with_range, view);
   }
   return news;
 }

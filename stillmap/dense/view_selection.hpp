@@ -15,6 +15,7 @@ struct ViewSelectionConfig {
   double nearer = 1.5;
   double min_unknown_share = 0.1;
   double min_changed_share = 0.01;
+  int most = 100;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -36,6 +37,14 @@ struct ViewSelectionConfig {
     visit("min_changed_share",
           self.min_changed_share,
           FieldInfo{"share of surface that came or went above which a view is kept", "", 0, 1});
+    visit(
+        "most",
+        self.most,
+        FieldInfo{"number of views that see half of a view which is kept, above which it takes the "
+                  "place of one of them",
+                  "",
+                  1,
+                  100000});
   }
 };
 
@@ -45,6 +54,11 @@ struct ViewGain {
   double came = 0;     ///< surface that the last of them see through
   double went = 0;  ///< map surface that the new view sees through; 0 if the others already suffice
                     ///< to keep the view
+  /// The view held whose place the new one takes if it is kept: of those that see half of its
+  /// surface from about as far, the one that shows the least which few others show. Null while few
+  /// views see half of that surface. So the views of a place that is seen again and again do not
+  /// grow in number, however little of it is new each time.
+  const StaticView* replaces = nullptr;
 };
 
 /// Compares a sample of the view's points with the range images of the views held, in the order of

@@ -53,9 +53,10 @@ class Chooser {
     int joined = 0;
     for (int i = 0; i < times; ++i) {
       const PosedView posed{T, &view};
-      if (config_.enough > 0 &&
-          !is_worth_keeping(gain_of(posed, held_, camera(), config_, {}), config_)) {
-        continue;
+      if (config_.enough > 0) {
+        const ViewGain gain = gain_of(posed, held_, camera(), config_, {});
+        if (!is_worth_keeping(gain, config_)) continue;
+        std::erase_if(held_, [&](const PosedView& v) { return v.view == gain.replaces; });
       }
       views_.push_back(view);
       held_.push_back({T, &views_.back()});
@@ -63,6 +64,8 @@ class Chooser {
     }
     return joined;
   }
+
+  [[nodiscard]] const std::vector<PosedView>& held() const { return held_; }
 
   /// Points of a colour in the map of the views held.
   [[nodiscard]] std::size_t count(const Rgb& color) const {
@@ -156,6 +159,27 @@ TEST(ViewChoice, AChairThatIsPushedToAndFroIsWhereItIs) {
     EXPECT_GT(chooser.count(kThere.color), 100U) << round;
   }
   EXPECT_LT(joined, 90);  // of 300
+}
+
+TEST(ViewChoice, AViewOfACrowdedPlaceTakesThatOfOneThatIsNotNeeded) {
+  // Every view counts as news here.
+  Chooser chooser({.enough = 1000, .most = 30});
+  const Eigen::Isometry3d aside(Eigen::Translation3d(0.5, 0, 0));   // sees 0.87 of the same wall
+  const Eigen::Isometry3d nearer(Eigen::Translation3d(0, 0, 1.5));  // from half as far
+  const Eigen::Isometry3d elsewhere(Eigen::Translation3d(50, 0, 0));
+  EXPECT_EQ(chooser.show(view_of({}), 20), 20);
+  EXPECT_EQ(chooser.show(view_of({}, 1.5), 3, nearer), 3);
+  EXPECT_EQ(chooser.show(view_of({}), 50, aside), 50);
+  EXPECT_EQ(chooser.show(view_of({}), 3, elsewhere), 3);
+  const auto held_at = [&](const Eigen::Isometry3d& T) {
+    return std::ranges::count_if(chooser.held(), [&](const PosedView& v) {
+      return v.T_world_camera.translation() == T.translation();
+    });
+  };
+  EXPECT_EQ(held_at(Eigen::Isometry3d::Identity()), 5) << "which show the margin that others lack";
+  EXPECT_EQ(held_at(nearer), 3) << "from too near to be like the others";
+  EXPECT_EQ(held_at(aside), 25) << "30 see half of the wall, the first among them";
+  EXPECT_EQ(held_at(elsewhere), 3);
 }
 
 TEST(ViewChoice, ViewsWithoutPointsOrRangeAreNoTrouble) {

@@ -7,7 +7,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <iterator>
 #include <optional>
 #include <span>
 #include <utility>
@@ -233,18 +232,11 @@ void append_ascii(std::string& text, const PointCloud& cloud, std::size_t i) {
   const Eigen::Vector3f& p = cloud.positions[i];
   const Rgb& color = cloud.colors[i];
   const int label = cloud.labels.empty() ? 0 : cloud.labels[i];
-  fmt::format_to(std::back_inserter(text),
-                 "{} {} {} {} {} {} {}",
-                 p.x(),
-                 p.y(),
-                 p.z(),
-                 color[0],
-                 color[1],
-                 color[2],
-                 label);
+  text +=
+      fmt::format("{} {} {} {} {} {} {}", p.x(), p.y(), p.z(), color[0], color[1], color[2], label);
   if (!cloud.normals.empty()) {
     const Eigen::Vector3f& n = cloud.normals[i];
-    fmt::format_to(std::back_inserter(text), " {} {} {}", n.x(), n.y(), n.z());
+    text += fmt::format(" {} {} {}", n.x(), n.y(), n.z());
   }
   text += '\n';
 }

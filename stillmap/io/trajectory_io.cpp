@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -108,16 +107,15 @@ std::string format_trajectory(const Trajectory& trajectory) {
     Eigen::Quaterniond q(pose.T_world_camera.linear());
     q.normalize();
     if (q.w() < 0) q.coeffs() *= -1.0;  // chooses one of the two quaternions of a rotation
-    fmt::format_to(std::back_inserter(text),
-                   "{} {:.7f} {:.7f} {:.7f} {:.7f} {:.7f} {:.7f} {:.7f}\n",
-                   stamp_text(pose.stamp),
-                   t.x(),
-                   t.y(),
-                   t.z(),
-                   q.x(),
-                   q.y(),
-                   q.z(),
-                   q.w());
+    text += fmt::format("{} {:.7f} {:.7f} {:.7f} {:.7f} {:.7f} {:.7f} {:.7f}\n",
+                        stamp_text(pose.stamp),
+                        t.x(),
+                        t.y(),
+                        t.z(),
+                        q.x(),
+                        q.y(),
+                        q.z(),
+                        q.w());
   }
   return text;
 }

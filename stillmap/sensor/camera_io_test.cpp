@@ -179,6 +179,8 @@ TEST(ReadCameraYaml, RefusesWhatIsNoCamera) {
   EXPECT_THAT(error_for("- 1\n- 2\n"), HasSubstr("not a camera"));
   EXPECT_THAT(error_for("fx: 1\nfy: [1, 2\n"), AllOf(HasSubstr("camera.yaml:"), HasSubstr("YAML")));
   EXPECT_THAT(error_for(std::string(100000, '[')), HasSubstr("camera.yaml"));
+  // The library of YAML takes a zero for an escape character and quotes the line end after it.
+  EXPECT_THAT(error_for(std::string("fx: 1\0\n", 7)), HasSubstr("not YAML"));
 }
 
 TEST(ReadTruthCamera, ReadsTheCameraAndIgnoresTheRest) {

@@ -292,6 +292,19 @@ TEST_F(Layouts, DumpsByFrameNumberOrByStamp) {
   }
 }
 
+TEST_F(Layouts, PairsHaveTheTextsOfTheListIfItHasThemAll) {
+  write_frames("pairs/rgb/{}.png", "pairs/depth/{}.png", 5);
+  write("pairs/associations.txt",
+        "500000000 rgb/0.png 500000000 depth/0.png\n1000000000 rgb/1.png 1000000000 depth/1.png\n");
+  const auto texts = [&](const char* list) {
+    write("pairs/rgb.txt", list);
+    const Sequence pairs = Sequence::open(folder("pairs"), {.camera = small_camera(5000)});
+    return std::vector{pairs.entry(FrameId(0)).stamp.text, pairs.entry(FrameId(1)).stamp.text};
+  };
+  EXPECT_THAT(texts("0.5 rgb/0.png\n1 rgb/1.png\n"), ElementsAre("0.5", "1"));
+  EXPECT_THAT(texts("1 rgb/1.png\n"), ElementsAre("500000000", "1000000000")) << "of one unit";
+}
+
 TEST_F(Layouts, Bonn) {
   fs::rename(folder("tum"), folder("rgbd_bonn_crowd"));
   fs::remove(folder("rgbd_bonn_crowd") / "camera.yaml");

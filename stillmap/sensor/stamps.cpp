@@ -2,10 +2,12 @@
 #include "stillmap/sensor/stamps.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <string_view>
+#include <utility>
 
 #include <fmt/core.h>
+
+#include "stillmap/io/stamp_text.hpp"
 
 namespace stillmap {
 namespace {
@@ -53,11 +55,9 @@ std::optional<std::vector<Stamp>> numbers_in_names(std::span<const std::filesyst
   numbers.reserve(files.size());
   for (const std::filesystem::path& file : files) {
     const std::string stem = file.stem().string();
-    const std::string_view text = last_number(stem);
-    double value = 0;
-    const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (text.empty() || status != std::errc()) return std::nullopt;
-    numbers.push_back({value, std::string(text)});
+    std::optional<Stamp> number = parse_stamp(last_number(stem));
+    if (!number) return std::nullopt;
+    numbers.push_back(*std::move(number));
   }
   return numbers;
 }

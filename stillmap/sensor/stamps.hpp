@@ -31,7 +31,7 @@ struct UnitStamps {
 /// A stamp that no list has: its text gives microseconds.
 [[nodiscard]] Stamp stamp_of_seconds(double seconds);
 
-/// The last number in the name of each file; nothing where a name has none.
+/// The last number in the name of each file; nothing where a name has none that is a stamp.
 [[nodiscard]] std::optional<std::vector<Stamp>> numbers_in_names(
     std::span<const std::filesystem::path> files);
 

@@ -114,11 +114,17 @@ bool complete_stamps(std::vector<ImagePair>& pairs) {
   return false;
 }
 
-// The stamp with the text of rgb.txt, if listed there: other files refer to a frame by that text.
-Stamp stamp_as_listed(const ImageList& color, const Stamp& stamp) {
+// The stamps with the texts of rgb.txt, if all are listed there: other files refer to frames by
+// these texts. Otherwise texts could be of two units.
+std::vector<Stamp> as_listed(const ImageList& color, const ListStamps& own) {
   const auto seconds = [](const StampedImage& image) { return image.stamp.seconds; };
-  const auto found = std::ranges::lower_bound(color.images, stamp.seconds, {}, seconds);
-  return found != color.images.end() && seconds(*found) == stamp.seconds ? found->stamp : stamp;
+  std::vector<Stamp> listed = own.stamps;
+  for (const std::size_t i : own.rows) {
+    const auto found = std::ranges::lower_bound(color.images, listed[i].seconds, {}, seconds);
+    if (found == color.images.end() || seconds(*found) != listed[i].seconds) return own.stamps;
+    listed[i] = found->stamp;
+  }
+  return listed;
 }
 
 std::vector<ListedImage> color_images(const std::vector<ImagePair>& pairs) {
@@ -144,9 +150,9 @@ SequenceContent read_pairs(const fs::path& path,
   for (const ImagePair& pair : pairs) depth_stamps.push_back(pair.second.stamp.value());
   depth_stamps = in_seconds(std::move(depth_stamps), own).stamps;
   SequenceContent content;
+  const std::vector<Stamp> texts = as_listed(color, stamps);
   for (const std::size_t i : stamps.rows) {
-    const Stamp stamp = listed ? stamp_as_listed(color, stamps.stamps[i])
-                               : stamp_of_seconds(stamps.stamps[i].seconds);
+    const Stamp stamp = listed ? texts[i] : stamp_of_seconds(stamps.stamps[i].seconds);
     content.entries.push_back({stamp,
                                depth_stamps[i].seconds,
                                listed_file(folder, pairs[i].first),

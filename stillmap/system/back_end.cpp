@@ -2,14 +2,11 @@
 #include "stillmap/system/back_end.hpp"
 
 #include <algorithm>
-#include <map>
 #include <ranges>
 #include <utility>
 
 #include "stillmap/core/error.hpp"
 #include "stillmap/session/session_map.hpp"
-#include "stillmap/slam/optim/pose_time.hpp"
-#include "stillmap/slam/tracking/trajectory_smoother.hpp"
 
 namespace stillmap {
 namespace {
@@ -31,7 +28,7 @@ BackEnd::BackEnd(const SystemConfig& config,
     : session_{camera, {}, Map(measure.level_scales()), {}, {}, {}},
       times_(config.tracking.shutter, camera),
       mapping_(config.mapping, camera, measure, {workers.mapping(), probe}),
-      smooths_(config.tracking.smooth),
+      smoothing_(config.tracking.smooth, {workers.dense(), probe}),
       categories_(config.dynamics.objects.categories),
       dense_(resolved_cloud(config), camera, {workers.dense(), probe}),
       loops_(config.loop,
@@ -49,6 +46,7 @@ void BackEnd::load(Session session) {
   }
   session_ = std::move(session);
   first_frame_ = session_.frames.size();
+  smoothing_.begin(first_frame_);
   loaded_submap_ = main_submap(session_);
   loops_.set_places(index_of(session_.map));
   const std::vector<SubmapId> submaps = session_.map.submaps();
@@ -73,6 +71,7 @@ void BackEnd::apply_finished_work(std::int64_t frame_number) {
   if (mapping_.idle()) moved = loops_.apply_due(session_.map, frame_number) || moved;
   if (moved) T_odometry_world_ = T_odometry_world_ * T_before * T_world_last().inverse();
   dense_.collect_due(session_, T_odometry_world_, frame_number);
+  smoothing_.process(session_, frame_number);
 }
 
 void BackEnd::apply(const MappingResult& mapped, std::int64_t frame_number) {
@@ -146,7 +145,7 @@ std::size_t BackEnd::record(const RgbdFrame& frame, const TrackedFrame& tracked)
       {frame.stamp,
        tracked.reference,
        session_.map.T_world_keyframe(tracked.reference).inverse() * tracked.T_world_camera});
-  information_.push_back(tracked.information);
+  smoothing_.add(tracked.information);
   return session_.frames.size() - 1;
 }
 
@@ -157,29 +156,7 @@ void BackEnd::refer_to_keyframe(std::size_t record, KeyframeId keyframe) {
 void BackEnd::finish() {
   apply_finished_work(kEnd);  // which may begin another adjustment
   loops_.finish(session_.map, main_submap(session_, first_frame_));
-  if (smooths_) smooth();
-}
-
-// Smooths the trajectory of this run's frames, in each submap for itself.
-void BackEnd::smooth() {
-  std::map<SubmapId, std::vector<std::size_t>> frames;
-  for (std::size_t i = first_frame_; i < session_.frames.size(); ++i) {
-    frames[submap_of(session_, session_.frames[i])].push_back(i);
-  }
-  for (const auto& [submap, records] : frames) {
-    std::vector<MeasuredPose> measured;
-    for (const std::size_t i : records) {
-      const Eigen::Isometry3d T = T_world_camera(i);
-      const bool defines_axes = T.matrix() == Eigen::Isometry3d::Identity().matrix();
-      measured.push_back(
-          {session_.frames[i].stamp.seconds, T, information_[i - first_frame_], defines_axes});
-    }
-    const std::vector<Eigen::Isometry3d> poses = smooth_trajectory(measured);
-    for (std::size_t k = 0; k < records.size(); ++k) {
-      FrameRecord& frame = session_.frames[records[k]];
-      frame.T_reference_frame = session_.map.T_world_keyframe(frame.reference).inverse() * poses[k];
-    }
-  }
+  smoothing_.finish(session_);
 }
 
 // If this run tracked no frame, the result is the submap of the session that it continues.
@@ -205,6 +182,7 @@ BackEnd BackEnd::inline_copy() const {
   copy.mapping_ = mapping_.inline_copy();
   copy.dense_ = dense_.inline_copy();
   copy.loops_ = loops_.inline_copy();
+  copy.smoothing_ = smoothing_.inline_copy();
   return copy;
 }
 

@@ -16,6 +16,7 @@
 #include "stillmap/system/dense_stage.hpp"
 #include "stillmap/system/mapping_stage.hpp"
 #include "stillmap/system/results.hpp"
+#include "stillmap/system/smoothing_stage.hpp"
 
 namespace stillmap {
 
@@ -94,12 +95,10 @@ class BackEnd {
   [[nodiscard]] SubmapId result_submap() const;
   [[nodiscard]] Eigen::Isometry3d T_world_last() const;
   void apply(const MappingResult& mapped, std::int64_t frame_number);
-  void smooth();
   void smooth_velocity(const Keyframe& keyframe);
 
   Session session_;
-  std::size_t first_frame_ = 0;        // of this run in the session
-  std::vector<Matrix6d> information_;  // of the poses of this run's frames
+  std::size_t first_frame_ = 0;  // of this run in the session
   SubmapId next_submap_{0};
   SubmapId loaded_submap_;  // with most frames of the loaded session
   Eigen::Isometry3d T_odometry_world_ = Eigen::Isometry3d::Identity();
@@ -107,7 +106,7 @@ class BackEnd {
 
   CameraTimesEstimator times_;
   MappingStage mapping_;
-  bool smooths_;
+  SmoothingStage smoothing_;
   CategoryTable categories_;
   DenseStage dense_;
   LoopStage loops_;

@@ -76,17 +76,23 @@ void DenseStage::collect_due(Session& session,
                              std::int64_t frame_number) {
   for (ViewRecord& made : jobs_.collect_due(frame_number)) {
     leave_out_missed(made, session, T_odometry_world);
-    if (is_worth_keeping(session, made)) session.views.push_back(std::move(made));
+    keep_if_worth(session, std::move(made));
   }
 }
 
-bool DenseStage::is_worth_keeping(const Session& session, const ViewRecord& made) const {
-  if (config_.views.enough == 0) return true;
-  const FrameRecord& frame = session.frames[made.frame];
-  const PosedView view{T_world_frame(session, frame), made.view.get()};
-  const std::vector<PosedView> held = posed_views(session, submap_of(session, frame));
-  const ViewGain gain = gain_of(view, held, camera_, config_.views, config_.free);
-  return stillmap::is_worth_keeping(gain, config_.views);
+void DenseStage::keep_if_worth(Session& session, ViewRecord made) const {
+  if (config_.views.enough > 0) {
+    const FrameRecord& frame = session.frames[made.frame];
+    const PosedView view{T_world_frame(session, frame), made.view.get()};
+    const std::vector<PosedView> held = posed_views(session, submap_of(session, frame));
+    const ViewGain gain = gain_of(view, held, camera_, config_.views, config_.free);
+    if (!is_worth_keeping(gain, config_.views)) return;
+    if (gain.replaces != nullptr) {
+      std::erase_if(session.views,
+                    [&](const ViewRecord& v) { return v.view.get() == gain.replaces; });
+    }
+  }
+  session.views.push_back(std::move(made));
 }
 
 }  // namespace stillmap

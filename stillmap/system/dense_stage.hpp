@@ -66,7 +66,7 @@ class DenseStage {
   void leave_out_missed(ViewRecord& made,
                         const Session& session,
                         const Eigen::Isometry3d& T_odometry_world);
-  [[nodiscard]] bool is_worth_keeping(const Session& session, const ViewRecord& made) const;
+  void keep_if_worth(Session& session, ViewRecord made) const;
 
   CloudConfig config_;
   CameraModel camera_;

@@ -120,6 +120,16 @@ TEST(Growth, ViewsStayAsManyWhereNothingNewIsSeen) {
   EXPECT_LT(*late().map.accuracy_m, 1.1 * *with_all.map.accuracy_m);
 }
 
+TEST(Growth, APlaceHasABoundedNumberOfViews) {
+  SystemConfig bounded = settings();
+  bounded.cloud.views.enough = 1000;  // so that none is ever known well
+  bounded.cloud.views.most = 60;
+  const Outcome outcome = go(10, bounded);
+  EXPECT_LE(outcome.views, 80U) << "162 without a bound; some see less than half of others";
+  EXPECT_GT(outcome.map.sa, early().map.sa - 0.002);
+  EXPECT_LT(*outcome.map.accuracy_m, 1.1 * *early().map.accuracy_m);
+}
+
 TEST(Growth, KeyFramesDoNotComeOnlyToGoAgain) {
   SystemConfig always = settings();
   always.keyframe.max_known_share = 1;

@@ -10,7 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tooling/pipeline/lasting_tracks.hpp"
+#include "tooling/pipeline/object_log_codec.hpp"
 
 namespace stillmap {
 namespace {
@@ -94,10 +94,28 @@ void count(TrackCounts& counts, const ObjectState& state) {
 
 }  // namespace
 
-std::string objects_jsonl(std::span<const LoggedFrame> frames, const Trajectory& final_poses) {
+void ObjectLog::on_frame(const RgbdFrame& /*frame*/, const FrameResult& result) {
+  frames_.push_back(encode(LoggedFrame{{result.stamp, result.T_world_camera}, result.objects}));
+}
+
+void ObjectLog::visit(const std::function<void(const LoggedFrame& frame)>& visit) const {
+  const auto rename = [this](TrackId& track) { track = lasting_.of(track); };
+  frames_.visit([&](std::string_view bytes) {
+    LoggedFrame frame = decode_logged_frame(bytes);
+    for (ObjectState& state : frame.second) {
+      rename(state.track);
+      if (state.person) rename(*state.person);
+      if (state.motion.by) rename(*state.motion.by);
+    }
+    visit(frame);
+  });
+}
+
+std::string ObjectLog::jsonl(const Trajectory& final_poses) const {
   std::string text;
   auto pose = final_poses.begin();
-  for (const auto& [then, states] : frames) {
+  visit([&](const LoggedFrame& frame) {
+    const auto& [then, states] = frame;
     while (pose != final_poses.end() && pose->stamp.seconds < then.stamp.seconds) ++pose;
     std::optional<Move> to_final;
     if (pose != final_poses.end() && pose->stamp.text == then.stamp.text) {
@@ -109,18 +127,18 @@ std::string objects_jsonl(std::span<const LoggedFrame> frames, const Trajectory&
     }
     const Json line = {{"stamp", then.stamp.text}, {"objects", std::move(objects)}};
     text += line.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
-  }
+  });
   return text;
 }
 
-std::vector<ObjectSummary> summarize_objects(std::span<const LoggedFrame> frames) {
+std::vector<ObjectSummary> ObjectLog::summaries() const {
   std::map<TrackId, TrackCounts> tracks;
-  for (const auto& [pose, states] : frames) {
+  visit([&](const LoggedFrame& frame) {
     std::set<TrackId> in_frame;  // a track may have several parts
-    for (const ObjectState& state : states) {
+    for (const ObjectState& state : frame.second) {
       if (in_frame.insert(state.track).second) count(tracks[state.track], state);
     }
-  }
+  });
   std::vector<ObjectSummary> summaries;
   for (auto& [track, counts] : tracks) {
     ObjectSummary& summary = counts.summary;
@@ -132,18 +150,6 @@ std::vector<ObjectSummary> summarize_objects(std::span<const LoggedFrame> frames
     summaries.push_back(std::move(summary));
   }
   return summaries;
-}
-
-void ObjectLog::on_end(const RunResult& result) {
-  const LastingTracks lasting(result.united_tracks);
-  const auto rename = [&lasting](TrackId& track) { track = lasting.of(track); };
-  for (auto& [pose, states] : frames_) {
-    for (ObjectState& state : states) {
-      rename(state.track);
-      if (state.person) rename(*state.person);
-      if (state.motion.by) rename(*state.motion.by);
-    }
-  }
 }
 
 }  // namespace stillmap

@@ -47,6 +47,10 @@ FrameResult pushed_chair(Stamp stamp) {
   return result;
 }
 
+void show(ObjectLog& log, const std::vector<FrameResult>& results) {
+  for (const FrameResult& result : results) log.on_frame({}, result);
+}
+
 std::vector<json> lines_of(const std::string& text) {
   std::vector<json> lines;
   std::istringstream in(text);
@@ -56,9 +60,10 @@ std::vector<json> lines_of(const std::string& text) {
 
 TEST(ObjectLog, SaysAllOfAnObject) {
   const FrameResult result = pushed_chair({5.0, "5.000000"});
-  const std::vector<LoggedFrame> log = {log_frame(result)};
+  ObjectLog log;
+  show(log, {result});
   const Trajectory as_it_was = {{{5.0, "5.000000"}, result.T_world_camera}};
-  const std::vector<json> lines = lines_of(objects_jsonl(log, as_it_was));
+  const std::vector<json> lines = lines_of(log.jsonl(as_it_was));
   ASSERT_EQ(lines.size(), 1U);
   EXPECT_EQ(lines[0].at("stamp"), "5.000000");
   const json& objects = lines[0].at("objects");
@@ -89,12 +94,13 @@ TEST(ObjectLog, SaysAllOfAnObject) {
 TEST(ObjectLog, PlacesAreUnderFinalPoses) {
   FrameResult empty;
   empty.stamp = {4.0, "4"};
-  const std::vector<LoggedFrame> log = {log_frame(empty), log_frame(pushed_chair({5.0, "5"}))};
+  ObjectLog log;
+  show(log, {empty, pushed_chair({5.0, "5"})});
   // The chair is 2 m straight ahead of the camera; its velocity leads away from it.
   Trajectory corrected(1);
   corrected[0].stamp = {5.0, "5"};
   corrected[0].T_world_camera.translation() << 10, 20, 30;
-  const std::vector<json> lines = lines_of(objects_jsonl(log, corrected));
+  const std::vector<json> lines = lines_of(log.jsonl(corrected));
   ASSERT_EQ(lines.size(), 2U);
   EXPECT_TRUE(lines[0].at("objects").empty());
   EXPECT_EQ(lines[1].at("objects")[1].at("p_world"), (json{10.0, 20.0, 32.0}));
@@ -102,14 +108,17 @@ TEST(ObjectLog, PlacesAreUnderFinalPoses) {
 }
 
 TEST(ObjectLog, WithoutAPoseNothingIsSaidOfThePlace) {
-  const std::vector<LoggedFrame> log = {log_frame(pushed_chair({5.0, "5"}))};
-  const json chair = lines_of(objects_jsonl(log, {})).at(0).at("objects").at(1);
+  ObjectLog log;
+  show(log, {pushed_chair({5.0, "5"})});
+  const json chair = lines_of(log.jsonl({})).at(0).at("objects").at(1);
   EXPECT_TRUE(chair.at("p_world").is_null());
   EXPECT_TRUE(chair.at("v_world").is_null());
 }
 
 TEST(ObjectLog, KeysStayInOrder) {
-  const std::string text = objects_jsonl(std::vector{log_frame(pushed_chair({5.0, "5"}))}, {});
+  ObjectLog log;
+  show(log, {pushed_chair({5.0, "5"})});
+  const std::string text = log.jsonl({});
   EXPECT_EQ(text.substr(0, 62),
             R"({"stamp":"5","objects":[{"track":4,"class":"person","category")");
   EXPECT_EQ(text.back(), '\n');
@@ -139,9 +148,9 @@ TEST(ObjectLog, SumsUpEachTrack) {
   apart.objects[1].dynamic = false;
   apart.objects[1].reason = StateReason::kBoxesApart;
   apart.objects[1].motion.state = MotionState::kStill;
-  const std::vector<LoggedFrame> log = {
-      log_frame(pushed_chair({1, "1"})), log_frame(apart), log_frame(apart)};
-  const std::vector<ObjectSummary> summaries = summarize_objects(log);
+  ObjectLog log;
+  show(log, {pushed_chair({1, "1"}), apart, apart});
+  const std::vector<ObjectSummary> summaries = log.summaries();
   ASSERT_EQ(summaries.size(), 2U);
   EXPECT_EQ(summaries[0].track, 4U);
   EXPECT_EQ(summaries[0].class_name, "person");

@@ -16,6 +16,7 @@
 #include "stillmap/perception/objects/object_tracker.hpp"
 #include "stillmap/sensor/arriving_stream.hpp"
 #include "stillmap/sensor/clocked_stream.hpp"
+#include "tooling/pipeline/live_log.hpp"
 #include "tooling/pipeline/look_policy.hpp"
 #include "tooling/pipeline/object_feed.hpp"
 #include "tooling/pipeline/replayed_stream.hpp"
@@ -44,7 +45,7 @@ class LiveLoop {
 
   /// Returns the time from the beginning to the pose, ms.
   double process(const FramePtr& frame);
-  [[nodiscard]] LiveResult take_result() { return std::move(result_); }
+  [[nodiscard]] LiveResult take_result() { return {record_.record(), std::move(report_)}; }
 
  private:
   [[nodiscard]] ObjectFeedStep look(const FramePtr& frame);
@@ -55,7 +56,8 @@ class LiveLoop {
   std::unique_ptr<ObjectFeed> feed_;
   LookPolicy looks_;
   std::optional<FrameId> last_seen_;  // the last frame whose objects have arrived
-  LiveResult result_;
+  LiveLog record_;
+  LiveReport report_;
 };
 
 ObjectFeedStep LiveLoop::look(const FramePtr& frame) {
@@ -64,12 +66,11 @@ ObjectFeedStep LiveLoop::look(const FramePtr& frame) {
   if (feed_) step = feed_->step(frame, {system_.needs_own_objects(), looks_.gap_frames()});
   for (const auto& arrived : step.arrived) recorded.objects_of.push_back(arrived.first->id);
   if (!step.arrived.empty()) last_seen_ = step.arrived.back().first->id;
-  result_.report.looked_at += step.arrived.size();
+  report_.looked_at += step.arrived.size();
   if (last_seen_) {
-    result_.report.objects_age_frames.push_back(
-        static_cast<double>(frame->id.value - last_seen_->value));
+    report_.objects_age_frames.push_back(static_cast<double>(frame->id.value - last_seen_->value));
   }
-  result_.record.push_back(std::move(recorded));
+  record_.push_back(recorded);
   return step;
 }
 

@@ -129,7 +129,8 @@ class CellGrid {
       next.emplace(0.0F, i);
     }
     while (!next.empty()) {
-      const auto [length, i] = next.top();
+      const float length = next.top().first;
+      const int i = next.top().second;
       next.pop();
       if (length > at(way, i)) continue;
       visit_neighbours(i, [&](int neighbour) {

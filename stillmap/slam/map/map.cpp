@@ -96,8 +96,12 @@ std::vector<LandmarkId> Map::landmark_ids() const {
 
 LandmarkId Map::resolve(LandmarkId id) const {
   while (id.valid() && !landmarks_.contains(id)) {
-    const auto at = merged_into_.find(id);
-    id = at == merged_into_.end() ? LandmarkId{} : at->second;
+    auto at = merged_into_.find(id);
+    if (at == merged_into_.end()) {
+      at = merged_earlier_.find(id);
+      if (at == merged_earlier_.end()) return {};
+    }
+    id = at->second;
   }
   return id;
 }
@@ -309,7 +313,15 @@ MapUpdate Map::take_changes() {
   return update;
 }
 
+void Map::forget_old_merges() {
+  if (++updates_ < kMergesKept) return;
+  updates_ = 0;
+  merged_earlier_ = std::move(merged_into_);
+  merged_into_.clear();
+}
+
 void Map::apply(const MapUpdate& update) {
+  forget_old_merges();
   for (const auto& [gone, into] : update.merged_landmarks) {
     merged_into_[gone] = into;
     // Creates the landmarks that the window created, so that both have counts; they are filled in

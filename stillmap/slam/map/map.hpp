@@ -25,6 +25,9 @@ namespace stillmap {
 /// beforehand. Until then the owner changes nothing but the counts of tracking.
 class Map {
  public:
+  /// Number of applied updates over which resolve() surely knows a merge.
+  static constexpr int kMergesKept = 64;
+
   /// `level_scales` are the pixel sizes of the pyramid levels of the extractor.
   explicit Map(std::vector<float> level_scales) : level_scales_(std::move(level_scales)) {}
 
@@ -46,7 +49,8 @@ class Map {
   [[nodiscard]] std::vector<LandmarkId> landmark_ids() const;  ///< sorted
   [[nodiscard]] const std::vector<float>& level_scales() const { return level_scales_; }
   /// The landmark into which `id` was merged, over any number of merges; invalid if that was
-  /// removed.
+  /// removed, or if a merge is older than the last kMergesKept updates that were applied: a map
+  /// whose places are seen again and again merges landmarks without end.
   [[nodiscard]] LandmarkId resolve(LandmarkId id) const;
   /// The pose of a key frame, present or dropped. The id must have been in the map.
   [[nodiscard]] Eigen::Isometry3d T_world_keyframe(KeyframeId id) const;
@@ -95,12 +99,15 @@ class Map {
  private:
   Landmark& touch(LandmarkId id);
   Keyframe& touch(KeyframeId id);
+  void forget_old_merges();
 
   std::vector<float> level_scales_;
   std::map<KeyframeId, Keyframe> keyframes_;
   std::unordered_map<LandmarkId, Landmark> landmarks_;
   std::map<KeyframeId, Anchor> dropped_keyframes_;
-  std::unordered_map<LandmarkId, LandmarkId> merged_into_;
+  // Merges since the last multiple of kMergesKept updates, and those in as many updates before it.
+  std::unordered_map<LandmarkId, LandmarkId> merged_into_, merged_earlier_;
+  int updates_ = 0;
   KeyframeId next_keyframe_{0};
   LandmarkId next_landmark_{0};
 

@@ -185,6 +185,20 @@ TEST(Map, TakenChangesAreTakenOnce) {
   EXPECT_EQ(second.next_landmark, LandmarkId(1));
 }
 
+TEST(Map, ForgetsOldMerges) {
+  Map map = standing_keyframes(2);
+  const LandmarkId into = map.add_landmark({0, 0, 2}, {kf(0), 0});
+  const LandmarkId gone = map.add_landmark({0, 0, 2}, {kf(1), 0});
+  map.merge_landmarks(gone, into);
+  (void)map.take_changes();
+  const MapUpdate nothing = map.take_changes();
+  for (int i = 0; i < Map::kMergesKept; ++i) map.apply(nothing);
+  EXPECT_EQ(map.resolve(gone), into);
+  for (int i = 0; i < Map::kMergesKept; ++i) map.apply(nothing);
+  EXPECT_FALSE(map.resolve(gone).valid());
+  EXPECT_EQ(map.resolve(into), into);
+}
+
 TEST(Map, ConsistencyCheckSeesADanglingObservation) {
   // A window in which a landmark lost an observation of a key frame that the owner has changed
   // meanwhile: applying it breaks the owner, and the check must say so.

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace stillmap {
+
+/// Records that are only needed at the end of a long run. All but the last few kB lie on the disk,
+/// in a file of TMPDIR (else /tmp) that has no name: nothing of it stays, however the process ends.
+class ScratchRecords {
+ public:
+  ScratchRecords();
+  ScratchRecords(const ScratchRecords&) = delete;
+  ScratchRecords& operator=(const ScratchRecords&) = delete;
+  ~ScratchRecords();
+
+  /// Adds a record of less than 4 GB. Throws Error when the disk takes no more.
+  void push_back(std::string_view record);
+  /// Calls `visit` with each record, in order. Throws Error when they cannot be read back.
+  void visit(const std::function<void(std::string_view record)>& visit) const;
+  /// The number of bytes in memory.
+  [[nodiscard]] std::size_t buffered() const { return buffer_.size(); }
+
+ private:
+  class File;
+
+  std::unique_ptr<File> file_;  // null until there are more bytes than the buffer takes
+  std::string buffer_;          // follows what is in the file
+};
+
+}  // namespace stillmap

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stillmap/system/smoothing_stage.hpp"
+
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "stillmap/session/session_map.hpp"
+#include "stillmap/slam/tracking/trajectory_smoother.hpp"
+
+namespace stillmap {
+namespace {
+
+constexpr std::size_t kPart = 1000;          // frames that are smoothed together
+constexpr std::int64_t kPartLagFrames = 30;  // its work is far shorter
+
+/// Consecutive frames of one submap, and their records.
+struct Stretch {
+  std::vector<std::size_t> records;
+  std::vector<MeasuredPose> measured;
+};
+
+/// The first `count` frames from a record on, by submap.
+std::vector<Stretch> stretches(const Session& session,
+                               std::size_t first_record,
+                               const std::deque<Matrix6d>& information,
+                               std::size_t count) {
+  std::map<SubmapId, Stretch> by_submap;
+  for (std::size_t i = 0; i < count; ++i) {
+    const FrameRecord& frame = session.frames[first_record + i];
+    const Eigen::Isometry3d T = T_world_frame(session, frame);
+    const bool defines_axes = T.matrix() == Eigen::Isometry3d::Identity().matrix();
+    Stretch& stretch = by_submap[submap_of(session, frame)];
+    stretch.records.push_back(first_record + i);
+    stretch.measured.push_back({frame.stamp.seconds, T, information[i], defines_axes});
+  }
+  std::vector<Stretch> all;
+  for (auto& [submap, stretch] : by_submap) all.push_back(std::move(stretch));
+  return all;
+}
+
+}  // namespace
+
+SmoothingStage::SmoothingStage(bool smooths, const StageOptions& options, std::size_t most)
+    : smooths_(smooths),
+      most_(most),
+      jobs_(options.worker, [probe = options.probe] { begin_work(probe, Stage::kAdjustment); }) {}
+
+SmoothingStage SmoothingStage::inline_copy() const {
+  SmoothingStage copy = *this;
+  copy.jobs_ = jobs_.inline_copy();
+  return copy;
+}
+
+void SmoothingStage::add(const Matrix6d& information) {
+  if (smooths_) information_.push_back(information);
+}
+
+void SmoothingStage::take_over(Session& session, std::int64_t frame_number) {
+  for (const Corrections& corrections : jobs_.collect_due(frame_number)) {
+    for (const auto& [record, T_before_after] : corrections) {
+      Eigen::Isometry3d& T = session.frames[record].T_reference_frame;
+      T = T * T_before_after;
+    }
+  }
+}
+
+void SmoothingStage::process(Session& session, std::int64_t frame_number) {
+  take_over(session, frame_number);
+  if (information_.size() < most_ + kPart) return;
+  jobs_.submit(frame_number + kPartLagFrames,
+               [parts = stretches(session, first_record_, information_, kPart)] {
+                 Corrections corrections;
+                 for (const Stretch& part : parts) {
+                   const std::vector<Eigen::Isometry3d> poses = smooth_trajectory(part.measured);
+                   for (std::size_t i = 0; i < poses.size(); ++i) {
+                     const Eigen::Isometry3d& T_world_before = part.measured[i].T_world_camera;
+                     corrections.push_back({part.records[i], T_world_before.inverse() * poses[i]});
+                   }
+                 }
+                 return corrections;
+               });
+  first_record_ += kPart;
+  information_.erase(information_.begin(),
+                     information_.begin() + static_cast<std::ptrdiff_t>(kPart));
+}
+
+void SmoothingStage::finish(Session& session) {
+  take_over(session, std::numeric_limits<std::int64_t>::max());
+  for (const Stretch& part : stretches(session, first_record_, information_, information_.size())) {
+    const std::vector<Eigen::Isometry3d> poses = smooth_trajectory(part.measured);
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      FrameRecord& frame = session.frames[part.records[i]];
+      frame.T_reference_frame = session.map.T_world_keyframe(frame.reference).inverse() * poses[i];
+    }
+  }
+  first_record_ += information_.size();
+  information_.clear();
+}
+
+}  // namespace stillmap
