@@ -17,6 +17,9 @@ void read(std::string_view bytes) {
     load_yaml_text(fields_again, dump_yaml(fields), "what was written");
     require(dump_yaml(fields_again) == dump_yaml(fields), "the same settings");
   });
+  test::Config of_another_version;
+  read_or_refuse(
+      [&] { load_yaml_text(list_fields(of_another_version), bytes, "input", UnknownKeys::kSkip); });
   read_or_refuse([&] { set_value(fields, bytes, "--set"); });
 }
 

@@ -59,10 +59,17 @@ template <class Config>
 /// the mistake stay set.
 void load_yaml(std::span<const FieldRef> fields, const std::filesystem::path& file);
 
+/// What a key means that is no setting.
+enum class UnknownKeys {
+  kRefuse,  ///< a mistake
+  kSkip,    ///< a setting of another version: it and its value are skipped
+};
+
 /// load_yaml for the text of such a file. Messages call the file `name`.
 void load_yaml_text(std::span<const FieldRef> fields,
                     std::string_view text,
-                    const std::string& name);
+                    const std::string& name,
+                    UnknownKeys unknown = UnknownKeys::kRefuse);
 
 /// Sets one value from a text "key=value", as strictly as load_yaml. `where` says in messages where
 /// the text stood.

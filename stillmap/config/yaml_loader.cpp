@@ -73,8 +73,8 @@ std::string without_end_space(std::string text) {
 // repeated keys, and end hostile input at its first unsupported construct.
 class FieldSetter final : public YAML::EventHandler {
  public:
-  FieldSetter(std::span<const FieldRef> fields, std::string file)
-      : fields_(fields), file_(std::move(file)) {}
+  FieldSetter(std::span<const FieldRef> fields, std::string file, UnknownKeys unknown)
+      : fields_(fields), file_(std::move(file)), unknown_(unknown) {}
 
   void OnDocumentStart(const YAML::Mark& mark) override {
     if (started_) fail(mark, "expected one YAML document, this is a second one");
@@ -83,6 +83,7 @@ class FieldSetter final : public YAML::EventHandler {
   void OnDocumentEnd() override {}
 
   void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    if (skipped()) return;
     check_plain(mark, "", anchor);
     if (groups_.empty()) fail(mark, kExpectedMap);
     if (!key_) fail(mark, "expected a key, got nothing");
@@ -99,6 +100,7 @@ class FieldSetter final : public YAML::EventHandler {
                 const std::string& tag,
                 YAML::anchor_t anchor,
                 const std::string& value) override {
+    if (skipped()) return;
     check_plain(mark, tag, anchor);
     if (groups_.empty()) fail(mark, kExpectedMap);
     if (!key_) return take_key(mark, value);
@@ -112,24 +114,44 @@ class FieldSetter final : public YAML::EventHandler {
                        const std::string& /*tag*/,
                        YAML::anchor_t /*anchor*/,
                        YAML::EmitterStyle::value /*style*/) override {
+    if (begins_skipped()) return;
     fail_construct(mark, "a list");
   }
-  void OnSequenceEnd() override {}
+  void OnSequenceEnd() override { (void)ends_skipped(); }
 
   void OnMapStart(const YAML::Mark& mark,
                   const std::string& tag,
                   YAML::anchor_t anchor,
                   YAML::EmitterStyle::value /*style*/) override {
+    if (begins_skipped()) return;
     check_plain(mark, tag, anchor);
     const bool is_group = key_ && find_group(fields_, *key_) != nullptr;
     if (!groups_.empty() && !is_group) fail_construct(mark, "a map");
     groups_.push_back(key_.value_or(""));
     key_.reset();
   }
-  void OnMapEnd() override { groups_.pop_back(); }
+  void OnMapEnd() override {
+    if (!ends_skipped()) groups_.pop_back();
+  }
 
  private:
   static constexpr const char* kExpectedMap = "expected a map of keys ('key: value' lines)";
+
+  // Whether a value belongs to a key that is skipped.
+  bool skipped() {
+    if (!skipping_) return false;
+    if (*skipping_ == 0) skipping_.reset();
+    return true;
+  }
+  bool begins_skipped() {
+    if (skipping_) ++*skipping_;
+    return skipping_.has_value();
+  }
+  bool ends_skipped() {
+    if (!skipping_) return false;
+    if (--*skipping_ == 0) skipping_.reset();
+    return true;
+  }
 
   [[nodiscard]] std::string where(const YAML::Mark& mark) const {
     return fmt::format("{}:{}", file_, mark.line + 1);
@@ -163,7 +185,9 @@ class FieldSetter final : public YAML::EventHandler {
   void take_key(const YAML::Mark& mark, const std::string& name) {
     const std::string key = groups_.back().empty() ? name : groups_.back() + "." + name;
     if (find_field(fields_, key) == nullptr && find_group(fields_, key) == nullptr) {
-      throw_unknown_key(fields_, key, where(mark));
+      if (unknown_ == UnknownKeys::kRefuse) throw_unknown_key(fields_, key, where(mark));
+      skipping_ = 0;
+      return;
     }
     if (!seen_.insert(key).second) fail(mark, fmt::format("{}: repeated key", key));
     key_ = key;
@@ -177,19 +201,22 @@ class FieldSetter final : public YAML::EventHandler {
   YAML::Mark key_mark_;              // for values without a position of their own
   std::set<std::string> seen_;
   bool started_ = false;
+  UnknownKeys unknown_;
+  std::optional<int> skipping_;  // the depth of the value of a skipped key; 0 before it
 };
 
 }  // namespace
 
 void load_yaml_text(std::span<const FieldRef> fields,
                     std::string_view text,
-                    const std::string& name) {
+                    const std::string& name,
+                    UnknownKeys unknown) {
   if (text.size() > kMaxBytes) throw Error("{}: larger than 1 MiB, not a configuration", name);
   const std::string yaml = without_end_space(std::string(text));
   if (yaml.empty()) throw Error("{}: empty, expected a YAML file", name);
   check_text(name, yaml);
   std::istringstream stream(yaml);
-  FieldSetter setter(fields, name);
+  FieldSetter setter(fields, name, unknown);
   try {
     YAML::Parser parser(stream);
     while (parser.HandleNextDocument(setter)) {

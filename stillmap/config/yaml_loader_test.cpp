@@ -76,6 +76,22 @@ TEST_F(LoadYaml, TextIsReadAsAFileIs) {
   EXPECT_EQ(dump_yaml(list_fields(again)), text);
 }
 
+TEST_F(LoadYaml, UnknownKeysAreSkippedWhereAsked) {
+  const auto read = [](const std::string& text) {
+    Config config;
+    load_yaml_text(list_fields(config), text, "x", UnknownKeys::kSkip);
+    return config.seed;
+  };
+  for (const char* unknown : {"gone: 1\n",
+                              "gone:\n",
+                              "gone: [1, [2, {a: b}]]\n",
+                              "gone:\n  deep:\n    deeper: 1\n  list: []\n",
+                              "tracking:\n  gone: 1\n"}) {
+    EXPECT_EQ(read(unknown + std::string("seed: 7\n")), 7) << unknown;
+  }
+  EXPECT_THROW((void)read("gone: 1\nseed: x\n"), Error);
+}
+
 TEST_F(LoadYaml, SetsWhatTheFileNamesAndNothingElse) {
   const Config config = load(
       "# a comment\r\n"

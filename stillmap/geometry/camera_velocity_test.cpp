@@ -50,7 +50,8 @@ TEST(FittedVelocity, HasAFifthOfTheNoiseOfTwoFrames) {
   // of the values', that of a difference sqrt(2).
   std::vector<TimedMotion> motions;
   for (int k = -2; k <= 2; ++k) {
-    motions.push_back({k / 30.0, make_pose(Eigen::Quaterniond::Identity(), {k == 2 ? 1e-3 : 0, 0, 0})});
+    motions.push_back(
+        {k / 30.0, make_pose(Eigen::Quaterniond::Identity(), {k == 2 ? 1e-3 : 0, 0, 0})});
   }
   EXPECT_NEAR(fitted_velocity(motions).linear.x(), 0.2 * 1e-3 * 30, 1e-9);
 }

@@ -13,7 +13,9 @@ namespace stillmap {
 
 SystemConfig settings_of(const Session& session, const std::string& place) {
   SystemConfig config;
-  load_yaml_text(list_fields(config), session.config_yaml, place + ": settings");
+  // A map outlives the settings of the version that made it.
+  load_yaml_text(
+      list_fields(config), session.config_yaml, place + ": settings", UnknownKeys::kSkip);
   return config;
 }
 

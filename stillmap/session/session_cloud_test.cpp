@@ -45,6 +45,18 @@ TEST(SessionCloud, HasTheViewsOfOneSubmapWhereTheyStand) {
   EXPECT_TRUE(session_cloud(session, SubmapId(1), "x").empty());
 }
 
+// A map that an earlier version saved, with settings that are gone.
+TEST(SessionCloud, SettingsOfAnotherVersionAreSkipped) {
+  const Session session = two_submaps(
+      "tracking:\n  shutter:\n    min_readout_s: 0.01\n    calibrate: false\n"
+      "gone:\n  list: [1, {a: 2}]\n  deep:\n    deeper: x\ncloud:\n  free_space: 'off'\n  "
+      "voxel_size_m: 0.25\n");
+  const SystemConfig settings = settings_of(session, "x");
+  EXPECT_EQ(settings.cloud.voxel_size_m, 0.25);
+  EXPECT_FALSE(settings.tracking.shutter.calibrate);
+  EXPECT_EQ(session_cloud(session, SubmapId(0), "x").size(), 1U);
+}
+
 TEST(SessionCloud, SettingsAreTheSessions) {
   EXPECT_EQ(settings_of(two_submaps("cloud:\n  voxel_size_m: 0.25\n"), "x").cloud.voxel_size_m,
             0.25);
@@ -56,7 +68,7 @@ TEST(SessionCloud, SettingsAreTheSessions) {
     }
     return "no error";
   };
-  EXPECT_THAT(problem("cloud:\n  voxel: 1\n"), HasSubstr("a.stillmap: settings:2: "));
+  EXPECT_THAT(problem("cloud:\n  voxel_size_m: thin\n"), HasSubstr("a.stillmap: settings:2: "));
   EXPECT_THAT(problem("cloud:\n  free_space: 'on'\n"),
               HasSubstr("a.stillmap: invalid view of frame 0"));
 }

@@ -19,14 +19,12 @@ struct CameraTimes {
 
 /// What brings the features of a frame to one time, that of its pose.
 struct FrameTiming {
-  CameraVelocity velocity;   ///< that the features are corrected for; zero where unknown
+  CameraVelocity velocity;         ///< that the features are corrected for; zero where unknown
   CameraVelocity smooth_velocity;  ///< by the frames around, later; `velocity` until then
-  double depth_stamp_s = 0;  ///< of the depth image, after that of the colour image
-  CameraTimes assumed;       ///< the times that the features are corrected for
+  double depth_stamp_s = 0;        ///< of the depth image, after that of the colour image
+  CameraTimes assumed;             ///< the times that the features are corrected for
 
-  [[nodiscard]] double depth_after_color_s() const {
-    return depth_stamp_s + assumed.depth_delay_s;
-  }
+  [[nodiscard]] double depth_after_color_s() const { return depth_stamp_s + assumed.depth_delay_s; }
 };
 
 /// The position of a raw pixel's row, in image heights from the middle row: -1/2 to 1/2.

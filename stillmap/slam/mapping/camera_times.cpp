@@ -83,8 +83,8 @@ void CameraTimesEstimator::add(const TimeEvidence& window) {
   if (!invertible || !covariance.allFinite()) return;
   const Eigen::Vector2d estimate = covariance * sum_.vector;
   const Eigen::Vector2d sigma = (windows_ * covariance.diagonal()).cwiseMax(0).cwiseSqrt();
-  times_.readout_s = std::clamp(
-      believed(estimate(0), sigma(0), stated_.readout_s), 0.0, config_.max_readout_s);
+  times_.readout_s =
+      std::clamp(believed(estimate(0), sigma(0), stated_.readout_s), 0.0, config_.max_readout_s);
   times_.depth_delay_s = std::clamp(believed(estimate(1), sigma(1), stated_.depth_delay_s),
                                     -config_.max_depth_delay_s,
                                     config_.max_depth_delay_s);

@@ -37,8 +37,8 @@ struct ShutterConfig {
                                             const CameraModel& camera,
                                             const MeasurementModel& measure);
 
-/// Corrects the features of key frames for the times as known now. Key frames of a loaded map, whose
-/// timing is not known, stay.
+/// Corrects the features of key frames for the times as known now. Key frames of a loaded map,
+/// whose timing is not known, stay.
 void correct_times(Map& window,
                    std::span<const KeyframeId> core,
                    const CameraModel& camera,

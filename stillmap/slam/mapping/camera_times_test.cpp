@@ -93,8 +93,7 @@ TEST(CorrectTimes, BringsKeyframesToTheTimesAsKnownAndLeavesThoseOfLoadedMaps) {
     truth.push_back(seen);
     ids.push_back(add_bare_keyframe(simulated, path(t), seen));
   }
-  const CameraVelocity velocity =
-      mean_velocity(path(0.999).inverse() * path(1.001), 0.002);
+  const CameraVelocity velocity = mean_velocity(path(0.999).inverse() * path(1.001), 0.002);
   simulated.map.set_features(
       ids[0], simulated.map.keyframe(ids[0]).features, {velocity, velocity, 0, {}});
   (void)simulated.map.take_changes();

@@ -106,7 +106,8 @@ TimedBundle bundle_of(const Recording& recording, const CameraTimes& times) {
 // Features are single-precision numbers: a step of both times must be large beside their errors.
 constexpr double kTimeUnit_s = 100;
 
-// All residuals as a function of both times, in their unit, the steps of all poses and of all points.
+// All residuals as a function of both times, in their unit, the steps of all poses and of all
+// points.
 Eigen::VectorXd residuals(const Recording& recording, const Eigen::VectorXd& x) {
   const TimedBundle bundle = bundle_of(recording, {kTimeUnit_s * x[0], kTimeUnit_s * x[1]});
   const BundleProblem& problem = bundle.problem;
@@ -124,8 +125,8 @@ Eigen::VectorXd residuals(const Recording& recording, const Eigen::VectorXd& x) 
 }
 
 TEST(TimeEvidence, IsWhatTheDenseNormalEquationsLeave) {
-  const Recording recording =
-      record(small_world(), [](double t) { return swinging(t); }, {0.02, 0.01}, 3, kExactDepth);
+  const Recording recording = record(
+      small_world(), [](double t) { return swinging(t); }, {0.02, 0.01}, 3, kExactDepth);
   const CameraTimes assumed{0.004, -0.003};
   const TimedBundle bundle = bundle_of(recording, assumed);
   const Eigen::Index size = 2 + 6 * 3 + 3 * std::ssize(bundle.problem.points);
@@ -150,7 +151,8 @@ TEST(TimeEvidence, IsWhatTheDenseNormalEquationsLeave) {
 
 TEST(TimeEvidence, FindsTheTimesWhateverIsAssumed) {
   const CameraTimes truth{0.02, -0.015};
-  const Recording recording = record(large_world(), [](double t) { return swinging(t); }, truth, 12, kNoise);
+  const Recording recording = record(
+      large_world(), [](double t) { return swinging(t); }, truth, 12, kNoise);
   for (const CameraTimes& assumed : {CameraTimes{}, CameraTimes{0.03, 0.02}}) {
     const TimeEvidence evidence = time_evidence(bundle_of(recording, assumed));
     const Eigen::Matrix2d covariance = evidence.information.inverse();
@@ -164,10 +166,12 @@ TEST(TimeEvidence, FindsTheTimesWhateverIsAssumed) {
 
 TEST(TimeEvidence, SteadyMotionTellsAlmostNothing) {
   const auto information = [](const CameraPath& path) {
-    return time_evidence(bundle_of(record(small_world(), path, {0.02, 0}, 6, kNoise), {})).information(0, 0);
+    return time_evidence(bundle_of(record(small_world(), path, {0.02, 0}, 6, kNoise), {}))
+        .information(0, 0);
   };
-  const double steady = information(
-      [](double t) { return make_pose(Eigen::Quaterniond::Identity(), {0.3 * t - 0.3, 0, 0}); });
+  const double steady = information([](double t) {
+    return make_pose(Eigen::Quaterniond::Identity(), {0.3 * t - 0.3, 0, 0});
+  });
   const double back_and_forth = information([](double t) {
     return make_pose(Eigen::Quaterniond::Identity(), {0.25 * std::sin(1.2 * t), 0, 0});
   });
@@ -175,7 +179,8 @@ TEST(TimeEvidence, SteadyMotionTellsAlmostNothing) {
 }
 
 TEST(TimeEvidence, HeldCamerasTakeNoPart) {
-  const Recording recording = record(small_world(), [](double t) { return swinging(t); }, {0.02, 0}, 4, kNoise);
+  const Recording recording = record(
+      small_world(), [](double t) { return swinging(t); }, {0.02, 0}, 4, kNoise);
   TimedBundle bundle = bundle_of(recording, {});
   bundle.problem.held.assign(4, 1);
   EXPECT_EQ(time_evidence(bundle).information.norm(), 0);
