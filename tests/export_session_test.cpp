@@ -110,7 +110,7 @@ TEST_F(ExportSession, RefusesWhatIsNoWholeSession) {
   write("a.stillmap", "ply\n");
   expect_refused("a.stillmap --ply a.ply", "a.stillmap: not a stillmap session");
   expect_refused("none.stillmap --ply a.ply", "none.stillmap: ");
-  session_.config_yaml = "cloud:\n  voxel: 2\n";
+  session_.config_yaml = "cloud:\n  voxel_size_m: thin\n";
   save();
   expect_refused("map.stillmap --ply a.ply", "map.stillmap: settings:2: ");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "a.ply"));

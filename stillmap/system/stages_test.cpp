@@ -201,7 +201,7 @@ Network half_blind(double masked_share) {
 
 TEST(Stages, ExtensionReachesWhereMasksDoNot) {
   expect_gain(Disturbance::kCurtain, half_blind(0.5), "paper", "extension.enabled");
-  expect_gain(Disturbance::kCurtain, half_blind(0.75), "full", "extension.enabled");
+  expect_gain(Disturbance::kCurtain, half_blind(0.7), "full", "extension.enabled");
 }
 
 TEST(Stages, JumpsFindWhatNoNetworkDoes) {
