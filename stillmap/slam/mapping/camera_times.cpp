@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <ranges>
+#include <set>
 #include <utility>
 
 #include <Eigen/LU>
@@ -14,14 +16,16 @@
 namespace stillmap {
 namespace {
 
-constexpr double kSignificant = 4;         // standard deviations
-constexpr double kNegligible_s = 1e-3;     // 0.4 mm at 0.4 m/s
-constexpr double kForgetting = 1.0 / 20;   // of earlier windows, per window: as many key frames as
-                                           // a window has
-constexpr double kLeastCondition = 1e-12;  // of the information
+constexpr double kSignificant = 4;        // standard deviations
+constexpr double kNegligible_s = 1e-3;    // 0.4 mm at 0.4 m/s
+constexpr double kForgetting = 1.0 / 20;  // of earlier windows, per window: as many key frames as
+                                          // a window has
+constexpr std::size_t kLatestKeyframes = 40;  // bounds the cost
+constexpr double kLeastCondition = 1e-12;     // of the information
 
-bool is_known(const FrameTiming& timing) {
-  return timing.velocity.linear.squaredNorm() + timing.velocity.angular.squaredNorm() > 0;
+// A velocity that is not known is zero.
+bool moves(const CameraVelocity& velocity) {
+  return velocity.linear.squaredNorm() + velocity.angular.squaredNorm() > 0;
 }
 
 bool differs(const CameraTimes& a, const CameraTimes& b) {
@@ -40,9 +44,21 @@ TimeEvidence time_evidence_of(const Map& window,
                               std::span<const KeyframeId> core,
                               const CameraModel& camera,
                               const MeasurementModel& measure) {
-  MapProblem made = make_problem(window, {core.begin(), core.end()}, camera, measure);
+  std::set<KeyframeId> asked(core.begin(), core.end());
+  std::size_t latest = 0;
+  for (const auto& [id, keyframe] : std::views::reverse(window.keyframes())) {
+    if (latest++ == kLatestKeyframes) break;
+    asked.insert(id);
+  }
+  MapProblem made = make_problem(window, asked, camera, measure);
   TimedBundle bundle{std::move(made.problem), {}, {}};
-  for (const KeyframeId id : made.keyframes) bundle.timing.push_back(window.keyframe(id).timing);
+  for (std::size_t c = 0; c < made.keyframes.size(); ++c) {
+    const KeyframeId id = made.keyframes[c];
+    bundle.timing.push_back(window.keyframe(id).timing);
+    // Nothing depends on where the bundle stands: origins are as free as others.
+    const bool takes_part = asked.contains(id) && moves(bundle.timing[c].smooth_velocity);
+    bundle.problem.held[c] = takes_part ? 0 : 1;
+  }
   for (std::size_t i = 0; i < made.features.size(); ++i) {
     const Keyframe& keyframe =
         window.keyframe(made.keyframes[bundle.problem.observations[i].camera]);
@@ -57,7 +73,7 @@ void correct_times(Map& window,
                    const CameraTimes& times) {
   for (const KeyframeId id : core) {
     const Keyframe& keyframe = window.keyframe(id);
-    if (!is_known(keyframe.timing) || !differs(keyframe.timing.assumed, times)) continue;
+    if (!moves(keyframe.timing.velocity) || !differs(keyframe.timing.assumed, times)) continue;
     FrameTiming timing = keyframe.timing;
     timing.assumed = times;
     window.set_features(

@@ -30,8 +30,8 @@ struct ShutterConfig {
   }
 };
 
-/// What an adjusted window of the map tells of the camera's times: the evidence of the key frames
-/// of `core`, but for origins.
+/// What an adjusted window of the map tells of the camera's times: the evidence of its core and of
+/// its latest key frames, as far as their velocities are known.
 [[nodiscard]] TimeEvidence time_evidence_of(const Map& window,
                                             std::span<const KeyframeId> core,
                                             const CameraModel& camera,
