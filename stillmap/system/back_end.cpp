@@ -71,7 +71,7 @@ void BackEnd::apply_finished_work(std::int64_t frame_number) {
   if (mapping_.idle()) moved = loops_.apply_due(session_.map, frame_number) || moved;
   if (moved) T_odometry_world_ = T_odometry_world_ * T_before * T_world_last().inverse();
   dense_.collect_due(session_, T_odometry_world_, frame_number);
-  smoothing_.process(session_, frame_number);
+  smoothing_.process(session_, times(), frame_number);
 }
 
 void BackEnd::apply(const MappingResult& mapped, std::int64_t frame_number) {
@@ -141,11 +141,13 @@ void BackEnd::smooth_velocity(const Keyframe& keyframe) {
 }
 
 std::size_t BackEnd::record(const RgbdFrame& frame, const TrackedFrame& tracked) {
-  session_.frames.push_back(
-      {frame.stamp,
-       tracked.reference,
-       session_.map.T_world_keyframe(tracked.reference).inverse() * tracked.T_world_camera});
-  smoothing_.add(tracked.information);
+  const Eigen::Isometry3d T_reference_frame =
+      session_.map.T_world_keyframe(tracked.reference).inverse() * tracked.T_world_camera;
+  session_.frames.push_back({frame.stamp, tracked.reference, T_reference_frame});
+  const Keyframe& reference =
+      session_.map.keyframe(session_.map.anchor(tracked.reference).keyframe);
+  smoothing_.add({tracked.information,
+                  time_correction(tracked.timing, reference.timing, T_reference_frame.inverse())});
   return session_.frames.size() - 1;
 }
 
@@ -156,7 +158,7 @@ void BackEnd::refer_to_keyframe(std::size_t record, KeyframeId keyframe) {
 void BackEnd::finish() {
   apply_finished_work(kEnd);  // which may begin another adjustment
   loops_.finish(session_.map, main_submap(session_, first_frame_));
-  smoothing_.finish(session_);
+  smoothing_.finish(session_, times());
 }
 
 // If this run tracked no frame, the result is the submap of the session that it continues.

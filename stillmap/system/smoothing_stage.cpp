@@ -20,19 +20,28 @@ struct Stretch {
   std::vector<MeasuredPose> measured;
 };
 
+bool is_identity(const Eigen::Isometry3d& T) {
+  return T.matrix() == Eigen::Isometry3d::Identity().matrix();
+}
+
 /// The first `count` frames from a record on, by submap.
 std::vector<Stretch> stretches(const Session& session,
                                std::size_t first_record,
-                               const std::deque<Matrix6d>& information,
+                               const std::deque<MeasuredFrame>& measured,
+                               const CameraTimes& times,
                                std::size_t count) {
   std::map<SubmapId, Stretch> by_submap;
   for (std::size_t i = 0; i < count; ++i) {
     const FrameRecord& frame = session.frames[first_record + i];
-    const Eigen::Isometry3d T = T_world_frame(session, frame);
-    const bool defines_axes = T.matrix() == Eigen::Isometry3d::Identity().matrix();
+    Eigen::Isometry3d T = T_world_frame(session, frame);
+    const bool defines_axes = is_identity(T);
+    // The map has corrected the key frames.
+    if (!is_identity(frame.T_reference_frame)) {
+      T = perturb_left(T.inverse(), measured[i].time_correction.step(times)).inverse();
+    }
     Stretch& stretch = by_submap[submap_of(session, frame)];
     stretch.records.push_back(first_record + i);
-    stretch.measured.push_back({frame.stamp.seconds, T, information[i], defines_axes});
+    stretch.measured.push_back({frame.stamp.seconds, T, measured[i].information, defines_axes});
   }
   std::vector<Stretch> all;
   for (auto& [submap, stretch] : by_submap) all.push_back(std::move(stretch));
@@ -52,8 +61,8 @@ SmoothingStage SmoothingStage::inline_copy() const {
   return copy;
 }
 
-void SmoothingStage::add(const Matrix6d& information) {
-  if (smooths_) information_.push_back(information);
+void SmoothingStage::add(const MeasuredFrame& frame) {
+  if (smooths_) waiting_.push_back(frame);
 }
 
 void SmoothingStage::take_over(Session& session, std::int64_t frame_number) {
@@ -65,11 +74,13 @@ void SmoothingStage::take_over(Session& session, std::int64_t frame_number) {
   }
 }
 
-void SmoothingStage::process(Session& session, std::int64_t frame_number) {
+void SmoothingStage::process(Session& session,
+                             const CameraTimes& times,
+                             std::int64_t frame_number) {
   take_over(session, frame_number);
-  if (information_.size() < most_ + kPart) return;
+  if (waiting_.size() < most_ + kPart) return;
   jobs_.submit(frame_number + kPartLagFrames,
-               [parts = stretches(session, first_record_, information_, kPart)] {
+               [parts = stretches(session, first_record_, waiting_, times, kPart)] {
                  Corrections corrections;
                  for (const Stretch& part : parts) {
                    const std::vector<Eigen::Isometry3d> poses = smooth_trajectory(part.measured);
@@ -81,21 +92,20 @@ void SmoothingStage::process(Session& session, std::int64_t frame_number) {
                  return corrections;
                });
   first_record_ += kPart;
-  information_.erase(information_.begin(),
-                     information_.begin() + static_cast<std::ptrdiff_t>(kPart));
+  waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(kPart));
 }
 
-void SmoothingStage::finish(Session& session) {
+void SmoothingStage::finish(Session& session, const CameraTimes& times) {
   take_over(session, std::numeric_limits<std::int64_t>::max());
-  for (const Stretch& part : stretches(session, first_record_, information_, information_.size())) {
+  for (const Stretch& part : stretches(session, first_record_, waiting_, times, waiting_.size())) {
     const std::vector<Eigen::Isometry3d> poses = smooth_trajectory(part.measured);
     for (std::size_t i = 0; i < poses.size(); ++i) {
       FrameRecord& frame = session.frames[part.records[i]];
       frame.T_reference_frame = session.map.T_world_keyframe(frame.reference).inverse() * poses[i];
     }
   }
-  first_record_ += information_.size();
-  information_.clear();
+  first_record_ += waiting_.size();
+  waiting_.clear();
 }
 
 }  // namespace stillmap

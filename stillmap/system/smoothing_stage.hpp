@@ -10,10 +10,20 @@
 #include "stillmap/concurrency/stage_probe.hpp"
 #include "stillmap/geometry/se3.hpp"
 #include "stillmap/session/session.hpp"
+#include "stillmap/slam/optim/time_correction.hpp"
 
 namespace stillmap {
 
+/// What is known of a recorded pose besides the pose.
+struct MeasuredFrame {
+  /// Of a step of T_camera_world by perturb_left(), as far as its features' errors are independent.
+  Matrix6d information = Matrix6d::Zero();
+  TimeCorrection time_correction;  ///< of its pose relative to its reference
+};
+
 /// Smooths the trajectory of a run's frames, in each submap for itself (smooth_trajectory()).
+///
+/// Poses measured before the camera's times were known are corrected for the times as known now.
 ///
 /// The last poses, `most` of them at least, are smoothed at the end, under the final map. Earlier
 /// ones are smoothed while the run goes on, a thousand at a time, under the map of that time,
@@ -30,14 +40,14 @@ class SmoothingStage {
 
   /// The run's frames are those from this record on. Only before the first add().
   void begin(std::size_t first_record) { first_record_ = first_record; }
-  /// Adds the information of the next recorded pose.
-  void add(const Matrix6d& information);
+  /// Adds what is known of the next recorded pose.
+  void add(const MeasuredFrame& frame);
   /// Takes over what is due, and begins to smooth the earliest poses where too many wait.
-  void process(Session& session, std::int64_t frame_number);
+  void process(Session& session, const CameraTimes& times, std::int64_t frame_number);
   /// Takes over all work, and smooths all poses that wait.
-  void finish(Session& session);
+  void finish(Session& session, const CameraTimes& times);
   /// The number of poses that wait.
-  [[nodiscard]] std::size_t waiting() const { return information_.size(); }
+  [[nodiscard]] std::size_t waiting() const { return waiting_.size(); }
 
  private:
   /// What smoothing does to a recorded pose, in the coordinates of its camera.
@@ -50,8 +60,8 @@ class SmoothingStage {
 
   bool smooths_;
   std::size_t most_;
-  std::size_t first_record_ = 0;      // that waits
-  std::deque<Matrix6d> information_;  // of the poses that wait
+  std::size_t first_record_ = 0;  // that waits
+  std::deque<MeasuredFrame> waiting_;
   JobLedger<Corrections> jobs_;
 };
 

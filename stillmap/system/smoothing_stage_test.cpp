@@ -58,11 +58,11 @@ void run(Worker* worker) {
     session.frames.push_back({{measured.back().stamp_s, {}},
                               KeyframeId(0),
                               T_keyframe_world * measured.back().T_world_camera});
-    stage.add(measured.back().information);
-    stage.process(session, static_cast<std::int64_t>(i));
+    stage.add({measured.back().information, {}});
+    stage.process(session, {}, static_cast<std::int64_t>(i));
     ASSERT_LE(stage.waiting(), kMost + 1000) << "what is kept does not grow";
   }
-  stage.finish(session);
+  stage.finish(session, {});
   EXPECT_EQ(stage.waiting(), 0U);
   // The map has not changed meanwhile, so poses are those of a trajectory smoothed as a whole.
   const std::vector<Eigen::Isometry3d> expected = smooth_trajectory(measured);
@@ -84,9 +84,38 @@ TEST(SmoothingStage, SmoothsThemBesideTheRun) {
   run(&worker);
 }
 
+TEST(SmoothingStage, CorrectsPosesForTheTimesAsKnownAtTheEnd) {
+  constexpr CameraTimes kTrue{.readout_s = 0.02, .depth_delay_s = -0.01};
+  Session session = session_of_one_keyframe();
+  const Eigen::Isometry3d T_keyframe_world = session.map.T_world_keyframe(KeyframeId(0)).inverse();
+  SmoothingStage stage(true, {});
+  Walk walk;
+  std::vector<MeasuredPose> measured;
+  for (std::size_t i = 0; i < 300; ++i) {
+    measured.push_back(walk.next());
+    // Measured before the times were known, for the first half.
+    const double per_s = i < 150 ? std::cos(static_cast<double>(i)) : 0;
+    TimeCorrection correction;
+    correction.by_times.col(0).setConstant(per_s);
+    correction.by_times.col(1).setConstant(-2 * per_s);
+    const Eigen::Isometry3d T_camera_world = measured.back().T_world_camera.inverse();
+    const Eigen::Isometry3d T_wrong =
+        perturb_left(T_camera_world, -correction.step(kTrue)).inverse();
+    session.frames.push_back(
+        {{measured.back().stamp_s, {}}, KeyframeId(0), T_keyframe_world * T_wrong});
+    stage.add({measured.back().information, correction});
+  }
+  stage.finish(session, kTrue);
+  const std::vector<Eigen::Isometry3d> expected = smooth_trajectory(measured);
+  for (std::size_t i = 0; i < measured.size(); ++i) {
+    const Eigen::Isometry3d T = T_world_frame(session, session.frames[i]);
+    EXPECT_LT((T.translation() - expected[i].translation()).norm(), 1e-3) << i << ": of up to 4 cm";
+  }
+}
+
 TEST(SmoothingStage, LeavesPosesAloneThatAreNotToBeSmoothed) {
   SmoothingStage stage(false, {});
-  stage.add(Matrix6d::Identity());
+  stage.add({Matrix6d::Identity(), {}});
   EXPECT_EQ(stage.waiting(), 0U);
 }
 

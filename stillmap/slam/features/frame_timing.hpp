@@ -5,6 +5,7 @@
 
 #include "stillmap/geometry/camera.hpp"
 #include "stillmap/geometry/camera_velocity.hpp"
+#include "stillmap/geometry/se3.hpp"
 
 namespace stillmap {
 
@@ -17,12 +18,18 @@ struct CameraTimes {
   double depth_delay_s = 0;
 };
 
+/// A quantity of the pose per second of each of the camera's times, (readout_s, depth_delay_s).
+using PoseByTimes = Eigen::Matrix<double, 6, 2>;
+
 /// What brings the features of a frame to one time, that of its pose.
 struct FrameTiming {
   CameraVelocity velocity;         ///< that the features are corrected for; zero where unknown
   CameraVelocity smooth_velocity;  ///< by the frames around, later; `velocity` until then
   double depth_stamp_s = 0;        ///< of the depth image, after that of the colour image
   CameraTimes assumed;             ///< the times that the features are corrected for
+  /// The step of T_camera_world by perturb_left(), per second, with which the pose found from these
+  /// features would follow other times; zero where unknown.
+  PoseByTimes pose_by_times = PoseByTimes::Zero();
 
   [[nodiscard]] double depth_after_color_s() const { return depth_stamp_s + assumed.depth_delay_s; }
 };

@@ -8,6 +8,7 @@
 #include "stillmap/slam/map/covisibility.hpp"
 #include "stillmap/slam/map/landmark_projection.hpp"
 #include "stillmap/slam/optim/pose_time.hpp"
+#include "stillmap/slam/optim/time_correction.hpp"
 
 namespace stillmap {
 namespace {
@@ -89,8 +90,15 @@ TrackedFrame Tracker::track(const RgbdFrame& frame,
   }
   tracked.status = lost_ ? TrackingStatus::kRelocalized : TrackingStatus::kTracked;
   tracked.T_world_camera = pose->T_camera_world.inverse();
-  tracked.information = pose_information(
-      camera_, pose->T_camera_world, observations_of(*tracked.features, pose->inliers));
+  const std::vector<PoseObservation> inliers = observations_of(*tracked.features, pose->inliers);
+  tracked.information = pose_information(camera_, pose->T_camera_world, inliers);
+  std::vector<double> row;
+  row.reserve(inliers.size());
+  for (const Match& match : pose->inliers) {
+    row.push_back(row_position(tracked.features->raw_px[match.feature], camera_));
+  }
+  tracked.timing.pose_by_times = pose_by_times(
+      camera_, pose->T_camera_world, inliers, row, tracked.timing.velocity, tracked.information);
   for (const Match& match : pose->inliers) tracked.landmarks[match.feature] = match.landmark;
   remember(tracked, map);
   return tracked;
