@@ -81,7 +81,7 @@ Session appended(const Session& first, const Session& second) {
     both.frames.push_back(std::move(frame));
   }
   for (const ViewRecord& view : second.views) {
-    both.views.push_back({view.frame + by.frame, view.view});
+    both.views.push_back({view.frame + by.frame, view.view, view.depth_after_color_s});
   }
   const std::uint32_t tracks = both.objects.empty() ? 0 : both.objects.back().track.value + 1;
   if (!second.objects.empty()) check_sum(tracks, second.objects.back().track.value);

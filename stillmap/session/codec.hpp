@@ -36,8 +36,9 @@ using DroppedKeyframes = std::vector<std::pair<KeyframeId, Anchor>>;
 
 [[nodiscard]] ByteWriter encode(const CameraModel& camera);
 [[nodiscard]] CameraModel decode_camera(ByteReader content);
-/// The version of a file with this camera: the oldest one that can describe its lens.
-[[nodiscard]] std::uint32_t version_for(const CameraModel& camera);
+/// The version of a file: the oldest one that can describe its camera's lens and its views.
+[[nodiscard]] std::uint32_t version_for(const CameraModel& camera,
+                                        std::span<const ViewRecord> views);
 
 [[nodiscard]] ByteWriter encode_text(const std::string& text);
 [[nodiscard]] std::string decode_text(ByteReader content);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <type_traits>
@@ -21,7 +22,7 @@ constexpr std::array kCameraNumbers = {&CameraModel::fx,
                                        &CameraModel::depth_factor,
                                        &CameraModel::readout_s};
 
-// Only from version 3 on; before them stands the lens (u32).
+// Only from kWideLensVersion on; before them stands the lens (u32).
 constexpr std::array kWideLensNumbers = {&CameraModel::k4, &CameraModel::k5, &CameraModel::k6};
 
 bool has_wide_lens(const CameraModel& camera) {
@@ -118,8 +119,10 @@ CameraModel decode_camera(ByteReader content) {
   return camera;
 }
 
-std::uint32_t version_for(const CameraModel& camera) {
-  return has_wide_lens(camera) ? kSessionVersion : kOldestSessionVersion;
+std::uint32_t version_for(const CameraModel& camera, std::span<const ViewRecord> views) {
+  const auto is_untimed = [](const ViewRecord& view) { return view.depth_after_color_s == 0; };
+  if (!std::ranges::all_of(views, is_untimed)) return kSessionVersion;
+  return has_wide_lens(camera) ? kWideLensVersion : kOldestSessionVersion;
 }
 
 ByteWriter encode_text(const std::string& text) {
@@ -187,6 +190,7 @@ ByteWriter encode(const ViewRecord& record) {
   out.number(record.frame);
   put(out, record.view->cloud);
   put(out, record.view->range);
+  if (record.depth_after_color_s != 0) out.number(record.depth_after_color_s);
   return out;
 }
 
@@ -197,6 +201,7 @@ ViewRecord decode_view(ByteReader content) {
   view.cloud = take_cloud(content);
   view.range = take_range(content);
   record.view = std::make_shared<const StaticView>(std::move(view));
+  if (!content.at_end()) record.depth_after_color_s = content.number<double>();
   content.finish();
   return record;
 }

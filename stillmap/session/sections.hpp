@@ -15,9 +15,11 @@ namespace stillmap {
 // layout.
 
 inline constexpr std::string_view kSessionMagic = "stillmap";
-inline constexpr std::uint32_t kSessionVersion = 3;
-/// The oldest version that is read. Files of cameras that it can describe are written in it.
+inline constexpr std::uint32_t kSessionVersion = 4;
+/// The oldest version that is read. What it can describe is written in it.
 inline constexpr std::uint32_t kOldestSessionVersion = 2;
+/// The first version that describes lenses with k4 to k6, and fish-eyes.
+inline constexpr std::uint32_t kWideLensVersion = 3;
 inline constexpr std::size_t kSessionHeadSize = 16;  ///< magic, version, checksum
 inline constexpr std::size_t kSectionHeadSize = 12;  ///< tag, size of the content
 inline constexpr std::size_t kSectionExtraSize =

@@ -27,6 +27,8 @@ struct FrameRecord {
 struct ViewRecord {
   std::uint32_t frame = 0;                 ///< index of its record
   std::shared_ptr<const StaticView> view;  ///< not null in a finished session
+  /// When its depth was taken, after the frame's colour image: the view's pose is that of then.
+  double depth_after_color_s = 0;
 };
 
 /// The state of a run that can be saved, continued and merged.

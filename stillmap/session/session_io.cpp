@@ -62,7 +62,7 @@ void write_parts(const SessionParts& parts,
                  const std::string& place) {
   check_parts(parts.map, place);
   check_records(parts, place);
-  SectionWriter out(sink, version_for(parts.camera));
+  SectionWriter out(sink, version_for(parts.camera, parts.views));
   out.write(kCamera, encode(parts.camera), place);
   out.write(kConfig, encode_text(parts.config_yaml), place);
   out.write(kMapHead, encode_map_head(parts.map), place);

@@ -95,10 +95,11 @@ TEST(SessionIo, AFileIsTheSameAsBytes) {
   expect_same(read_session(path), session);
 }
 
+std::uint32_t version_of(const std::string& bytes) {
+  return ByteReader(bytes.substr(kSessionMagic.size(), 4), "").number<std::uint32_t>();
+}
+
 TEST(SessionIo, OnlyACameraThatVersion2CannotDescribeMakesVersion3) {
-  const auto version_of = [](const std::string& bytes) {
-    return ByteReader(bytes.substr(kSessionMagic.size(), 4), "").number<std::uint32_t>();
-  };
   Session session = random_session(5);
   const std::string plain = encode_session(session);
   EXPECT_EQ(version_of(plain), 2U);
@@ -112,6 +113,18 @@ TEST(SessionIo, OnlyACameraThatVersion2CannotDescribeMakesVersion3) {
   const std::string fisheye = encode_session(session);
   EXPECT_EQ(version_of(fisheye), 3U);
   expect_same(decode_session(fisheye, "fisheye"), session);
+}
+
+TEST(SessionIo, OnlyAViewOfAnotherTimeThanItsFrameMakesVersion4) {
+  Session session = random_session(5);
+  const std::size_t plain = encode_session(session).size();
+  session.views[0].depth_after_color_s = -0.025;
+  const std::string timed = encode_session(session);
+  EXPECT_EQ(version_of(timed), 4U);
+  EXPECT_EQ(timed.size(), plain + 8);
+  expect_same(decode_session(timed, "timed"), session);
+  session.views[0].depth_after_color_s = std::nan("");
+  EXPECT_THROW((void)encode_session(session), Error);
 }
 
 TEST(SessionIo, WithoutViewsTheyAreNotRead) {

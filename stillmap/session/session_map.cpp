@@ -5,6 +5,32 @@
 #include <map>
 
 namespace stillmap {
+namespace {
+
+constexpr double kMaxGap_s = 0.2;  // between frames that tell the motion from one to the other
+
+// The pose at the time of the view's depth: on the way to the frame after, or before, by that time;
+// along that way where the frame on this side is missing.
+Eigen::Isometry3d T_world_view(const Session& session,
+                               const ViewRecord& view,
+                               const Eigen::Isometry3d& T_world_frame,
+                               const PoseOfRecord& T_world_record) {
+  if (view.depth_after_color_s == 0) return T_world_frame;
+  const double stamp_s = session.frames[view.frame].stamp.seconds;
+  const int side = view.depth_after_color_s > 0 ? 1 : -1;
+  for (const int step : {side, -side}) {
+    const std::int64_t i = static_cast<std::int64_t>(view.frame) + step;
+    if (i < 0 || i >= std::ssize(session.frames)) continue;
+    const auto neighbor = static_cast<std::size_t>(i);
+    const double gap_s = session.frames[neighbor].stamp.seconds - stamp_s;
+    if (gap_s * step <= 0 || gap_s * step > kMaxGap_s) continue;
+    const std::optional<Eigen::Isometry3d> T = T_world_record(neighbor);
+    if (T) return interpolate(T_world_frame, *T, view.depth_after_color_s / gap_s);
+  }
+  return T_world_frame;
+}
+
+}  // namespace
 
 Eigen::Isometry3d T_world_frame(const Session& session, const FrameRecord& frame) {
   return session.map.T_world_keyframe(frame.reference) * frame.T_reference_frame;
@@ -44,11 +70,18 @@ Trajectory keyframes_in(const Session& session, SubmapId submap) {
 }
 
 std::vector<PosedView> posed_views(const Session& session, SubmapId submap) {
+  return posed_views(session, [&](std::size_t i) -> std::optional<Eigen::Isometry3d> {
+    const FrameRecord& frame = session.frames[i];
+    if (submap_of(session, frame) != submap) return std::nullopt;
+    return T_world_frame(session, frame);
+  });
+}
+
+std::vector<PosedView> posed_views(const Session& session, const PoseOfRecord& T_world_frame) {
   std::vector<PosedView> views;
   for (const ViewRecord& record : session.views) {
-    const FrameRecord& frame = session.frames[record.frame];
-    if (submap_of(session, frame) != submap) continue;
-    views.push_back({T_world_frame(session, frame), record.view.get()});
+    const std::optional<Eigen::Isometry3d> T = T_world_frame(record.frame);
+    if (T) views.push_back({T_world_view(session, record, *T, T_world_frame), record.view.get()});
   }
   return views;
 }

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <optional>
 
 #include "stillmap/core/trajectory.hpp"
 #include "stillmap/session/session.hpp"
@@ -27,8 +29,15 @@ namespace stillmap {
 /// The poses of the key frames of a submap, by id.
 [[nodiscard]] Trajectory keyframes_in(const Session& session, SubmapId submap);
 
-/// The views of a submap with the poses of their frames, in the order of the frames. They refer to
-/// the session and must not outlive it.
+/// The views of a submap, each with the pose of the camera when its depth was taken, in the order
+/// of the frames. They refer to the session and must not outlive it.
 [[nodiscard]] std::vector<PosedView> posed_views(const Session& session, SubmapId submap);
+
+/// The pose of a frame by the index of its record; nothing where it is to be left out.
+using PoseOfRecord = std::function<std::optional<Eigen::Isometry3d>(std::size_t)>;
+
+/// The same for the views of frames that have a pose.
+[[nodiscard]] std::vector<PosedView> posed_views(const Session& session,
+                                                 const PoseOfRecord& T_world_frame);
 
 }  // namespace stillmap

@@ -111,5 +111,27 @@ TEST_F(SessionMap, TrajectoriesAreOfOneSubmap) {
   EXPECT_EQ(keyframes_in(session_, SubmapId(0))[1].T_world_camera.translation().x(), 2);
 }
 
+// The camera moves by 10 cm in 0.1 s; its depth is taken 0.02 s earlier or later.
+TEST_F(SessionMap, ViewStandsWhereTheCameraWasWhenItsDepthWasTaken) {
+  const auto x_of_view = [&](std::uint32_t frame, double depth_after_color_s) {
+    session_.views = {{frame, std::make_shared<const StaticView>(), depth_after_color_s}};
+    return posed_views(session_, SubmapId(0)).at(0).T_world_camera.translation().x();
+  };
+  for (int i = 0; i < 3; ++i) {
+    add_frame(0, at(0.1 * i));
+    session_.frames.back().stamp.seconds = 5 + 0.1 * i;
+  }
+  EXPECT_EQ(x_of_view(1, 0), 1.1);
+  EXPECT_NEAR(x_of_view(1, 0.02), 1.12, 1e-9);
+  EXPECT_NEAR(x_of_view(1, -0.02), 1.08, 1e-9);
+  EXPECT_NEAR(x_of_view(2, 0.02), 1.22, 1e-9) << "goes on as since the frame before";
+  EXPECT_NEAR(x_of_view(0, -0.02), 0.98, 1e-9);
+  session_.frames[1].reference = KeyframeId(1);  // of another submap
+  EXPECT_EQ(x_of_view(0, 0.02), 1.0) << "the motion is not known";
+  session_.frames[1].reference = KeyframeId(0);
+  session_.frames[2].stamp.seconds = 9;
+  EXPECT_NEAR(x_of_view(1, 0.02), 1.12, 1e-9) << "the next frame is too late to tell";
+}
+
 }  // namespace
 }  // namespace stillmap

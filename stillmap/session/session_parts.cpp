@@ -22,6 +22,8 @@ bool is_known(const MapParts& map, KeyframeId id) {
   return dropped != map.dropped_keyframes.end() && dropped->first == id;
 }
 
+constexpr double kMaxDepthTime_s = 1;
+
 // A description of the first mistake; null if there is none.
 const char* cloud_problem(const CompactCloud& cloud) {
   const std::size_t size = cloud.size();
@@ -83,6 +85,7 @@ void check_views(const SessionParts& parts, const std::string& place) {
     const bool in_order = i == 0 || parts.views[i - 1].frame < record.frame;
     const char* problem = record.frame >= parts.frames.size() || !in_order ? "its frame" : nullptr;
     if (record.view == nullptr) problem = "it is empty";
+    if (!(std::abs(record.depth_after_color_s) <= kMaxDepthTime_s)) problem = "its time";
     if (problem == nullptr) problem = cloud_problem(record.view->cloud);
     if (problem == nullptr) problem = range_problem(record.view->range, parts.camera);
     if (problem != nullptr) throw Error("{}: invalid view {}: {}", place, i, problem);

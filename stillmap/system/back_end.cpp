@@ -159,6 +159,11 @@ void BackEnd::finish() {
   apply_finished_work(kEnd);  // which may begin another adjustment
   loops_.finish(session_.map, main_submap(session_, first_frame_));
   smoothing_.finish(session_, times());
+  const double delay_s = times().depth_delay_s;
+  for (ViewRecord& view : session_.views) {
+    if (view.frame >= first_frame_) view.depth_after_color_s += delay_s - delay_of_views_s_;
+  }
+  delay_of_views_s_ = delay_s;
 }
 
 // If this run tracked no frame, the result is the submap of the session that it continues.
@@ -209,10 +214,8 @@ PointCloud BackEnd::map_with_poses(std::span<const std::optional<Eigen::Isometry
     poses[i] = T_world_frames[given++];
   }
   STILLMAP_CHECK(given == T_world_frames.size());
-  std::vector<PosedView> posed;
-  for (const ViewRecord& view : session_.views) {
-    if (poses[view.frame]) posed.push_back({*poses[view.frame], view.view.get()});
-  }
+  const std::vector<PosedView> posed =
+      posed_views(session_, [&](std::size_t i) { return poses[i]; });
   // Objects move with the first frame since they were last seen.
   std::vector<KnownObject> objects = known(T_odometry_world_);
   for (KnownObject& object : objects) {

@@ -99,6 +99,7 @@ class BackEnd {
 
   Session session_;
   std::size_t first_frame_ = 0;  // of this run in the session
+  double delay_of_views_s_ = 0;  // what the times of this run's views have of depth's delay
   SubmapId next_submap_{0};
   SubmapId loaded_submap_;  // with most frames of the loaded session
   Eigen::Isometry3d T_odometry_world_ = Eigen::Isometry3d::Identity();

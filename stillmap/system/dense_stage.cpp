@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "stillmap/core/depth_stamp.hpp"
 #include "stillmap/dense/label_image.hpp"
 #include "stillmap/session/session_map.hpp"
 
@@ -46,7 +47,8 @@ void DenseStage::add(const Candidate& candidate, std::int64_t frame_number) {
     const DynamicRegions masks = dynamic_regions(mask, excluded);
     return ViewRecord{
         index,
-        std::make_shared<const StaticView>(static_view(*frame, rays_, config_, masks, labels))};
+        std::make_shared<const StaticView>(static_view(*frame, rays_, config_, masks, labels)),
+        depth_stamp_after_color_s(*frame)};
   });
 }
 

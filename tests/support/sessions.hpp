@@ -220,6 +220,7 @@ inline void expect_same(const Session& a, const Session& b) {
   ASSERT_EQ(a.views.size(), b.views.size());
   for (std::size_t i = 0; i < a.views.size(); ++i) {
     EXPECT_EQ(a.views[i].frame, b.views[i].frame);
+    EXPECT_EQ(a.views[i].depth_after_color_s, b.views[i].depth_after_color_s);
     expect_same(*a.views[i].view, *b.views[i].view);
   }
 }

@@ -5,25 +5,13 @@
 #include <cmath>
 #include <unordered_set>
 
+#include "stillmap/core/depth_stamp.hpp"
 #include "stillmap/slam/map/covisibility.hpp"
 #include "stillmap/slam/map/landmark_projection.hpp"
 #include "stillmap/slam/optim/pose_time.hpp"
 #include "stillmap/slam/optim/time_correction.hpp"
 
 namespace stillmap {
-namespace {
-
-// Stamps of a pair that are further apart are of two clocks.
-constexpr double kMaxDepthStamp_s = 0.1;
-
-double depth_after_color_s(const RgbdFrame& frame) {
-  if (frame.depth_stamp_s == 0) return 0;
-  const double after_s = frame.depth_stamp_s - frame.stamp.seconds;
-  return std::abs(after_s) <= kMaxDepthStamp_s ? after_s : 0;
-}
-
-}  // namespace
-
 Tracker::Tracker(const TrackerConfig& config,
                  const RelocalizerConfig& relocalizer,
                  const CameraModel& camera,
@@ -65,7 +53,7 @@ TrackedFrame Tracker::track(const RgbdFrame& frame,
   TrackedFrame begun;
   begun.id = frame.id;
   begun.stamp_s = frame.stamp.seconds;
-  begun.timing.depth_stamp_s = depth_after_color_s(frame);
+  begun.timing.depth_stamp_s = depth_stamp_after_color_s(frame);
   begun.timing.assumed = times_;
   if (last_) begun.reference = last_->reference;
   Attempt found = attempt(begun, std::move(features), map, places);
