@@ -110,15 +110,28 @@ Tracker::Attempt Tracker::attempt(const TrackedFrame& frame,
   return result;
 }
 
+double Tracker::Attempt::trust() const {
+  double sum = 0;
+  if (!pose) return sum;
+  for (const Match& match : pose->inliers) {
+    sum += static_cast<double>(features.trust_of(match.feature));
+  }
+  return sum;
+}
+
 void Tracker::locate(Attempt& attempt,
                      const std::optional<PoseFromMatches>& start,
                      const Map& map) const {
   if (start) attempt.pose = track_local_map(attempt.frame, attempt.features, *start, map);
 }
 
-// Features that move together can outnumber the static ones, which must keep their landmarks.
+// Features that move together can outnumber the static ones, which must keep their landmarks. Too
+// few to be a pose are no witness: without them the trust in all must be that of a pose.
 bool Tracker::confirms(const Attempt& with_more, const Attempt& without) const {
   if (with_more.inliers() <= without.inliers()) return false;
+  if (without.inliers() < config_.min_inliers && with_more.trust() >= config_.min_inliers) {
+    return true;
+  }
   const auto shared = std::ranges::count_if(with_more.pose->inliers, [&](const Match& match) {
     return match.feature < without.features.size();
   });

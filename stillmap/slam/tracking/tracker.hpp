@@ -98,8 +98,8 @@ using MoreFeatures = std::function<std::optional<Features>(const Features&)>;
 /// wider search, then with the reference key frame by appearance. Then it is matched to the local
 /// map: the landmarks of the key frames that share landmarks with it. While lost, it tries to
 /// relocalise in every frame. Where the features match too few landmarks, further features may be
-/// requested; the landmarks matched without them must then agree with the pose. Poses are kept
-/// relative to key frames, so that they follow changes of the map.
+/// requested; the landmarks matched without them, if enough for a pose, must then agree. Poses are
+/// kept relative to key frames, so that they follow changes of the map.
 class Tracker {
  public:
   Tracker(const TrackerConfig& config,
@@ -147,6 +147,7 @@ class Tracker {
     Features features;
     std::optional<PoseFromMatches> pose;
     [[nodiscard]] int inliers() const { return pose ? static_cast<int>(pose->inliers.size()) : 0; }
+    [[nodiscard]] double trust() const;  // in all inliers together
   };
 
   [[nodiscard]] Attempt attempt(const TrackedFrame& frame,
