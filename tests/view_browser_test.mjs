@@ -6,6 +6,7 @@ import { execFileSync } from "node:child_process";
 import { existsSync, mkdirSync, openSync, readSync, rmSync } from "node:fs";
 import path from "node:path";
 import { browserLacks, launchBrowser, startView } from "./support/browser.mjs";
+import { contentOf, gatherErrors } from "./support/page_content.mjs";
 
 const [program, folder] = process.argv.slice(2);
 const FRAMES = 40;
@@ -24,31 +25,6 @@ function pointsIn(file) {
 
 const pointsOn = (page) => page.evaluate(() => Number(document.getElementById("scene").dataset.points || 0));
 const untilOnPage = (page, condition, value) => page.waitForFunction(condition, value, { timeout: 30000 });
-
-// What a picture of the page holds: the share of pixels unlike the first one, and the number of colours.
-async function contentOf(page, selector) {
-  const png = await page.locator(selector).screenshot();
-  return page.evaluate(async (base64) => {
-    const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
-    const image = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
-    const canvas = new OffscreenCanvas(image.width, image.height), context = canvas.getContext("2d");
-    context.drawImage(image, 0, 0);
-    const pixels = new Uint32Array(context.getImageData(0, 0, image.width, image.height).data.buffer);
-    return { share: pixels.filter((pixel) => pixel !== pixels[0]).length / pixels.length,
-             colors: new Set(pixels).size };
-  }, png.toString("base64"));
-}
-
-function gatherErrors(page) {
-  const errors = [];
-  page.on("pageerror", (error) => errors.push(error.message));
-  page.on("console", (message) => {
-    // Chromium itself says that a server is gone, which here it is for a while.
-    const serverIsGone = /WebSocket connection .* failed/.test(message.text());
-    if (message.type() === "error" && !serverIsGone) errors.push(message.text());
-  });
-  return errors;
-}
 
 async function seesARunGoOn(page, sequence, out) {
   const run = await startView(program, ["run", sequence, "--out", out, "--live", "--speed", "0.08", "--view",

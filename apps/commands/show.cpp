@@ -18,8 +18,8 @@
 #include "stillmap/session/session_cloud.hpp"
 #include "stillmap/session/session_io.hpp"
 #include "stillmap/session/session_map.hpp"
+#include "tooling/browser/logged_frames.hpp"
 #include "tooling/eval/map_files.hpp"
-#include "tooling/view/logged_frames.hpp"
 
 namespace stillmap {
 namespace {
@@ -34,7 +34,8 @@ struct ShowArguments {
 };
 
 struct ShownRun {
-  LoggedRun run;
+  LoggedRun run;  // without the text of its objects
+  std::string objects_jsonl;
   PointCloud map;
 };
 
@@ -57,7 +58,7 @@ ShownRun read_run_folder(const fs::path& folder) {
   }
   if (const fs::path file = folder / "objects.jsonl"; path_exists(file)) {
     run.objects_name = file.string();
-    run.objects_jsonl = read_text(file, kMostObjectBytes);
+    shown.objects_jsonl = read_text(file, kMostObjectBytes);
   }
   return shown;
 }
@@ -79,6 +80,7 @@ void show(const ShowArguments& arguments) {
   ShownRun shown = fs::is_regular_file(arguments.source, ignored)
                        ? read_saved_session(arguments.source)
                        : read_run_folder(arguments.source);
+  shown.run.objects_jsonl = shown.objects_jsonl;
   std::vector<ViewedFrame> frames = logged_frames(shown.run);
   const std::unique_ptr<ViewServer> server =
       serve_view(arguments.viewer, {arguments.source, frames.size(), std::move(shown.run.camera)});

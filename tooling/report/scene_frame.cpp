@@ -198,6 +198,13 @@ double head_height(const SceneFrame& scene) {
   return scene.box.isEmpty() ? 0.0 : scene.box.min().y() - kHeadroom_m;
 }
 
+SceneLayout scene_layout(const SceneFrame& scene) {
+  return {.R_level_world = scene.R_level_world,
+          .box = scene.box.isEmpty() ? scene.box : scene.box.merged(scene.cameras),
+          .head_y = head_height(scene),
+          .spacing_m = scene.spacing_m};
+}
+
 View view_from_above(const SceneFrame& scene, int width_px, int height_px) {
   constexpr double kEyeHeight_m = 10;
   View view;

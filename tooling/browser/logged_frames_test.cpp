@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tooling/view/logged_frames.hpp"
+#include "tooling/browser/logged_frames.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
