@@ -21,7 +21,7 @@ constexpr int kPictureWidth_px = 320;
 constexpr int kMaskWidth_px = 160;
 constexpr int kGhostPixels = 160;
 constexpr std::size_t kMostKeyframes = 2000;
-constexpr std::size_t kLayoutPoints = 100'000;  // enough to know how a map lies
+constexpr std::size_t kLayoutPoints = 40'000;  // enough to know how a map lies
 
 std::string dumped(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -72,7 +72,7 @@ void ViewState::apply(ViewInbox::Contents news) {
     state_.left_out += news.left_out;
     ++state_version_;
   }
-  if (news.end) finish(std::move(*news.end));
+  if (news.end) end_ = std::move(news.end);
 }
 
 void ViewState::add_frame(ViewedFrame frame) {
@@ -83,7 +83,7 @@ void ViewState::add_frame(ViewedFrame frame) {
 }
 
 void ViewState::grow(const ViewedSample& sample) {
-  if (!growing_ || state_.finished) return;
+  if (!growing_) return;
   map_.add(growing_->add(sample));
 }
 
@@ -122,7 +122,8 @@ void ViewState::finish(ViewedEnd end) {
   find_layout(end.map, end.trajectory);
 }
 
-std::string ViewState::next_message(PageProgress& progress) const {
+std::string ViewState::next_message(PageProgress& progress) {
+  if (end_) finish(*std::exchange(end_, std::nullopt));
   Message message;
   if (!std::exchange(progress.started, true)) {
     message.add("start", start_json(start_));

@@ -39,7 +39,7 @@ class ViewState {
   /// The next message to a page, which then has `progress`; empty if it lacks nothing. A message
   /// has at most kMessageFrames records and about kMessagePoints points; `"more"` says that there
   /// is another.
-  [[nodiscard]] std::string next_message(PageProgress& progress) const;
+  [[nodiscard]] std::string next_message(PageProgress& progress);
 
   static constexpr std::size_t kMessageFrames = 500;
   static constexpr std::size_t kMessagePoints = 100'000;
@@ -56,6 +56,7 @@ class ViewState {
   void add_state(Message& message, PageProgress& progress) const;
 
   ViewStart start_;
+  std::optional<ViewedEnd> end_;  // until a page asks for it, which may never be
   std::deque<ViewedFrame> frames_;
   std::size_t first_frame_ = 0;       // the place of frames_[0] among the run's frames
   std::uint64_t frames_version_ = 1;  // grows when records that pages have were changed

@@ -72,17 +72,21 @@ function onMessage(head, body) {
     fillLegend(element("legend"), legend);
   }
   run.take(head, body, element("picture"));
-  if (head.picture) records.addPicture(readPicture(head.picture, body));
+  if (head.picture) {
+    records.addPicture(readPicture(head.picture, body));
+    element("scene").dataset.pictures = String(records.pictures.size);
+  }
   showStatus();
   if (records.frames.length > 0 && !head.more) {
     showFrame(newest || shown < 0 ? records.frames.length - 1 : Math.min(shown, records.frames.length - 1));
   }
 }
 
-// Looks at the map by one of the scene's ways, from then on.
-function look(how) {
+// Looks at the map from elsewhere, with its ceiling or without.
+function look(withCeiling, from) {
   setFollowing(false);
-  how();
+  element("show-ceiling").checked = withCeiling;
+  from();
 }
 
 element("newest").addEventListener("click", () => {
@@ -94,11 +98,8 @@ element("follow").addEventListener("click", () => {
   setFollowing(!following);
   if (shown >= 0) showFrame(shown);
 });
-element("whole").addEventListener("click", () => look(() => scene.lookAtAll()));
-element("above").addEventListener("click", () => look(() => {
-  element("show-ceiling").checked = false;
-  scene.lookFromAbove();
-}));
+element("whole").addEventListener("click", () => look(true, () => scene.lookAtAll()));
+element("above").addEventListener("click", () => look(false, () => scene.lookFromAbove()));
 scene.onTouched = () => setFollowing(false);
 for (const what of ["path", "keyframes", "objects", "ceiling"]) {
   element(`show-${what}`).addEventListener("change", () => scene.changed());
