@@ -27,6 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostObjectBytes = std::size_t{1} << 30U;
+constexpr std::size_t kMostReportBytes = std::size_t{1} << 26U;
 
 struct ShowArguments {
   std::string source;
@@ -36,6 +37,7 @@ struct ShowArguments {
 struct ShownRun {
   LoggedRun run;  // without the text of its objects
   std::string objects_jsonl;
+  std::size_t dropped = 0;
   PointCloud map;
 };
 
@@ -59,6 +61,9 @@ ShownRun read_run_folder(const fs::path& folder) {
   if (const fs::path file = folder / "objects.jsonl"; path_exists(file)) {
     run.objects_name = file.string();
     shown.objects_jsonl = read_text(file, kMostObjectBytes);
+  }
+  if (const fs::path file = folder / "report.json"; path_exists(file)) {
+    shown.dropped = logged_drops(read_text(file, kMostReportBytes));
   }
   return shown;
 }
@@ -85,6 +90,7 @@ void show(const ShowArguments& arguments) {
   const std::unique_ptr<ViewServer> server =
       serve_view(arguments.viewer, {arguments.source, frames.size(), std::move(shown.run.camera)});
   for (ViewedFrame& frame : frames) server->inbox().put_frame(std::move(frame), std::nullopt);
+  if (shown.dropped > 0) server->inbox().put_dropped(shown.dropped);
   server->inbox().put_end(
       {std::move(shown.map), std::move(shown.run.trajectory), std::move(shown.run.keyframes)});
   server->wake();

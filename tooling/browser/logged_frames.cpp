@@ -115,4 +115,12 @@ std::vector<ViewedFrame> logged_frames(const LoggedRun& run, std::size_t most) {
   return frames;
 }
 
+std::size_t logged_drops(std::string_view report_json) {
+  const nlohmann::json report = nlohmann::json::parse(report_json, nullptr, false);
+  const nlohmann::json::json_pointer dropped("/live/dropped");
+  if (!report.is_object() || !report.contains(dropped)) return 0;
+  const nlohmann::json& count = report[dropped];
+  return count.is_number_unsigned() ? count.get<std::size_t>() : 0;
+}
+
 }  // namespace stillmap

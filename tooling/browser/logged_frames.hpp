@@ -29,4 +29,7 @@ struct LoggedRun {
 [[nodiscard]] std::vector<ViewedFrame> logged_frames(
     const LoggedRun& run, std::size_t most = std::numeric_limits<std::size_t>::max());
 
+/// How many frames a run dropped, by the text of its report.json; 0 where that does not say it.
+[[nodiscard]] std::size_t logged_drops(std::string_view report_json);
+
 }  // namespace stillmap

@@ -13,6 +13,9 @@ export function colorOf(object) {
   return object.d ? MOVING_COLORS[object.i % MOVING_COLORS.length] : RESTING_COLOR;
 }
 
+// Whether an object is known to move: what has no such motion may have a velocity that is noise.
+export function isMoving(object) { return object.m.startsWith("mov"); }
+
 function nameSprite(text, color) {
   const canvas = document.createElement("canvas");
   const context = canvas.getContext("2d"), font = "600 30px system-ui, sans-serif";
@@ -62,7 +65,7 @@ class Figure {
     this.name.position.set(0, size.y / 2 + 0.04, 0);
     this.shape.visible = Boolean(object.d) && !hasGhost;
     const speed = velocity.length();
-    this.arrow.visible = speed > SLOWEST_M_S;
+    this.arrow.visible = isMoving(object) && speed > SLOWEST_M_S;
     if (this.arrow.visible) {
       this.arrow.setDirection(velocity.clone().normalize());
       this.arrow.setLength(Math.min(2, speed) * 0.6 + 0.1, 0.1, 0.06);
