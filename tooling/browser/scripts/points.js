@@ -4,7 +4,7 @@
 
 const NEAR_M = 3;
 const LEAST_SHARE = 0.08;
-const USUAL_SPACING_M = 0.02;  // of the sketch of a map that grows
+const USUAL_SPACING_M = 0.016; // of the sketch of a map that grows
 const SIZE = 2.2;              // of a point, in spacings
 
 // Round points, neither too small to be seen nor so large that they hide others.
