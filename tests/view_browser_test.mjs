@@ -4,11 +4,14 @@
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { existsSync, mkdirSync, openSync, readSync, rmSync } from "node:fs";
+import os from "node:os";
 import path from "node:path";
 import { browserLacks, launchBrowser, startView } from "./support/browser.mjs";
+import { contentOf, gatherErrors } from "./support/page_content.mjs";
 
 const [program, folder] = process.argv.slice(2);
 const FRAMES = 40;
+const LONGEST_MS = 2000, MOST_BYTES = 1.5e6;
 
 if (browserLacks()) {
   console.log(`skipped: no ${browserLacks()} (tools/setup --browser installs it)`);
@@ -25,38 +28,11 @@ function pointsIn(file) {
 const pointsOn = (page) => page.evaluate(() => Number(document.getElementById("scene").dataset.points || 0));
 const untilOnPage = (page, condition, value) => page.waitForFunction(condition, value, { timeout: 30000 });
 
-// What a picture of the page holds: the share of pixels unlike the first one, and the number of colours.
-async function contentOf(page, selector) {
-  const png = await page.locator(selector).screenshot();
-  return page.evaluate(async (base64) => {
-    const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
-    const image = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
-    const canvas = new OffscreenCanvas(image.width, image.height), context = canvas.getContext("2d");
-    context.drawImage(image, 0, 0);
-    const pixels = new Uint32Array(context.getImageData(0, 0, image.width, image.height).data.buffer);
-    return { share: pixels.filter((pixel) => pixel !== pixels[0]).length / pixels.length,
-             colors: new Set(pixels).size };
-  }, png.toString("base64"));
-}
-
-function gatherErrors(page) {
-  const errors = [];
-  page.on("pageerror", (error) => errors.push(error.message));
-  page.on("console", (message) => {
-    // Chromium itself says that a server is gone, which here it is for a while.
-    const serverIsGone = /WebSocket connection .* failed/.test(message.text());
-    if (message.type() === "error" && !serverIsGone) errors.push(message.text());
-  });
-  return errors;
-}
-
 async function seesARunGoOn(page, sequence, out) {
   const run = await startView(program, ["run", sequence, "--out", out, "--live", "--speed", "0.08", "--view",
     "--view-address", "127.0.0.1:0/a-token-of-the-test", "--segmenter", `detections:${sequence}/detections`]);
-  const before = Date.now();
   await page.goto(run.url);
   await untilOnPage(page, () => document.getElementById("scene").dataset.points > 0);
-  console.log(`first points after ${Date.now() - before} ms`);
   const first = await pointsOn(page);
   await untilOnPage(page, (least) => document.getElementById("scene").dataset.points > least, first);
   await untilOnPage(page, () => /person \d+/.test(document.getElementById("objects").textContent));
@@ -72,6 +48,21 @@ async function showsAllOfIt(page, out) {
   await page.waitForTimeout(700);  // the scene rests, and is drawn with all points
   const scene = await contentOf(page, "#scene");
   assert.ok(scene.share > 0.1 && scene.colors > 500, `the scene is empty: ${JSON.stringify(scene)}`);
+}
+
+// How soon the map is there, and what the page weighs. Only a machine that does little else is timed.
+async function isLightAndSoonThere(browser, url, isIdle) {
+  const page = await browser.newPage();
+  await page.goto(url);
+  await untilOnPage(page, () => performance.getEntriesByName("the map is drawn").length > 0);
+  const { drawn_ms, bytes } = await page.evaluate(() => ({
+    drawn_ms: performance.getEntriesByName("the map is drawn")[0].startTime,
+    bytes: ["navigation", "resource"].flatMap((type) => performance.getEntriesByType(type))
+      .reduce((sum, entry) => sum + entry.decodedBodySize, 0) }));
+  console.log(`the map is drawn ${Math.round(drawn_ms)} ms after the address is opened; the page has ${bytes} bytes`);
+  assert.ok(bytes > 1e5 && bytes < MOST_BYTES, `the page has ${bytes} bytes`);
+  if (isIdle) assert.ok(drawn_ms < LONGEST_MS, `the map is drawn after ${drawn_ms} ms`);
+  await page.close();
 }
 
 async function scrubs(page) {
@@ -106,6 +97,7 @@ async function fitsAPhone(browser, url) {
   await context.close();
 }
 
+const isIdle = os.loadavg()[0] < 0.7 * os.cpus().length;
 rmSync(folder, { recursive: true, force: true });
 mkdirSync(folder, { recursive: true });
 const sequence = path.join(folder, "office"), out = path.join(folder, "out");
@@ -123,6 +115,7 @@ try {
   await scrubs(page);
   running = await connectsAgain(page, running, out);
   await fitsAPhone(browser, running.url);
+  await isLightAndSoonThere(browser, running.url, isIdle);
   assert.deepEqual(errors, []);
   console.log("the view works in a browser");
 } finally {

@@ -18,8 +18,8 @@
 #include "stillmap/session/session_cloud.hpp"
 #include "stillmap/session/session_io.hpp"
 #include "stillmap/session/session_map.hpp"
+#include "tooling/browser/logged_frames.hpp"
 #include "tooling/eval/map_files.hpp"
-#include "tooling/view/logged_frames.hpp"
 
 namespace stillmap {
 namespace {
@@ -27,6 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostObjectBytes = std::size_t{1} << 30U;
+constexpr std::size_t kMostReportBytes = std::size_t{1} << 26U;
 
 struct ShowArguments {
   std::string source;
@@ -34,7 +35,9 @@ struct ShowArguments {
 };
 
 struct ShownRun {
-  LoggedRun run;
+  LoggedRun run;  // without the text of its objects
+  std::string objects_jsonl;
+  std::size_t dropped = 0;
   PointCloud map;
 };
 
@@ -57,7 +60,10 @@ ShownRun read_run_folder(const fs::path& folder) {
   }
   if (const fs::path file = folder / "objects.jsonl"; path_exists(file)) {
     run.objects_name = file.string();
-    run.objects_jsonl = read_text(file, kMostObjectBytes);
+    shown.objects_jsonl = read_text(file, kMostObjectBytes);
+  }
+  if (const fs::path file = folder / "report.json"; path_exists(file)) {
+    shown.dropped = logged_drops(read_text(file, kMostReportBytes));
   }
   return shown;
 }
@@ -79,10 +85,12 @@ void show(const ShowArguments& arguments) {
   ShownRun shown = fs::is_regular_file(arguments.source, ignored)
                        ? read_saved_session(arguments.source)
                        : read_run_folder(arguments.source);
+  shown.run.objects_jsonl = shown.objects_jsonl;
   std::vector<ViewedFrame> frames = logged_frames(shown.run);
   const std::unique_ptr<ViewServer> server =
       serve_view(arguments.viewer, {arguments.source, frames.size(), std::move(shown.run.camera)});
   for (ViewedFrame& frame : frames) server->inbox().put_frame(std::move(frame), std::nullopt);
+  if (shown.dropped > 0) server->inbox().put_dropped(shown.dropped);
   server->inbox().put_end(
       {std::move(shown.map), std::move(shown.run.trajectory), std::move(shown.run.keyframes)});
   server->wake();

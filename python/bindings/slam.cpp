@@ -27,7 +27,8 @@ constexpr const char* kSlamDoc =
     result = slam.finish()                        # result.trajectory, result.map
 
 `camera`: a Camera, or the name or file of one. `settings`: a dict by key; default_settings() lists
-them, docs/settings.md explains them. `threads`: the results are the same bits with any number.
+them, docs/settings.md explains them. Further keywords are settings, too, so that a dict may be given
+as `**settings`. `threads`: the results are the same bits with any number.
 `load`: a map.stillmap to go on from; with `localize_only` that map stays as it is. World coordinates
 are those of the first tracked camera: x right, y down, z forward, metres. Python's lock is released
 while the library works.)";
@@ -174,15 +175,16 @@ void add_run_result(py::module_& module) {
 
 void add_slam_class(py::module_& module) {
   const std::string signature =
-      "camera, settings=None, *, threads=2, load=None, localize_only=False)";
+      "camera, settings=None, *, threads=2, load=None, localize_only=False, **more)";
   py::class_<Slam>(module, "Slam", doc("Slam(" + signature, kSlamDoc).c_str())
       .def(py::init([](const py::object& camera,
                        const py::object& settings,
                        int threads,
                        std::optional<std::filesystem::path> load,
-                       bool localize_only) {
+                       bool localize_only,
+                       const py::kwargs& more) {
              return std::make_unique<Slam>(camera_of(camera),
-                                           settings_of(settings),
+                                           settings_of(settings, more),
                                            SlamOptions{threads, std::move(load), localize_only});
            }),
            py::arg("camera"),

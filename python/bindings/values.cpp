@@ -366,8 +366,11 @@ std::optional<CameraModel> optional_camera_of(const py::object& camera) {
   return camera.is_none() ? std::nullopt : std::optional(camera_of(camera));
 }
 
-Settings settings_of(const py::object& settings) {
+Settings settings_of(const py::object& settings, const py::dict& more) {
   Settings result;
+  for (const auto& [key, value] : more) {
+    result.set(py::cast<std::string>(py::str(key)), text_of(value));
+  }
   if (settings.is_none()) return result;
   if (!py::hasattr(settings, "keys")) {
     throw Error("settings: {}, expected a dict such as {{\"tracking.features\": 1500}}",

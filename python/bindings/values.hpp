@@ -21,8 +21,8 @@ struct Poses {
 /// camera_of(); nothing for None.
 [[nodiscard]] std::optional<CameraModel> optional_camera_of(const pybind11::object& camera);
 
-/// Settings from a dict of their keys; None: the defaults. Throws Error naming a wrong key or
-/// value.
-[[nodiscard]] Settings settings_of(const pybind11::object& settings);
+/// Settings from a dict of their keys, or None; and from `more`, which `settings` overrules. Throws
+/// Error naming a wrong key or value.
+[[nodiscard]] Settings settings_of(const pybind11::object& settings, const pybind11::dict& more);
 
 }  // namespace stillmap::python

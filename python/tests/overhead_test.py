@@ -17,7 +17,7 @@ def test_python_costs_little():
                                 [[9, 9, 90, 200], [300, 9, 400, 90]])
     slam = stillmap.Slam("tum_fr3", {"dynamics.mode": "mask"}, threads=1)
     added = []
-    for k in range(30):
+    for k in range(90):
         color = np.ascontiguousarray(wall[:, 2 * k:2 * k + 640])
         start = time.perf_counter()
         frame = slam.process(color, depth, k / 30, boxes)

@@ -23,7 +23,9 @@ def public_names(thing):
 
 def parameters(node):
     arguments = node.args
-    return [each.arg for each in arguments.posonlyargs + arguments.args + arguments.kwonlyargs]
+    keywords = [arguments.kwarg] if arguments.kwarg else []
+    return [each.arg for each in
+            arguments.posonlyargs + arguments.args + arguments.kwonlyargs + keywords]
 
 
 def test_every_name_has_a_stub_and_every_stub_a_name():

@@ -2,6 +2,7 @@
 #include "tooling/pipeline/run_log.hpp"
 
 #include <algorithm>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -9,6 +10,7 @@
 
 #include "stillmap/core/error.hpp"
 #include "stillmap/perception/motion/modes.hpp"
+#include "tooling/browser/logged_frames.hpp"
 #include "tooling/eval/map_alignment.hpp"
 #include "tooling/eval/pose_at.hpp"
 
@@ -47,6 +49,19 @@ std::vector<Observer*> both(std::vector<Observer*> own, std::span<Observer* cons
   own.insert(own.end(), others.begin(), others.end());
   std::erase(own, nullptr);
   return own;
+}
+
+// Of all that is known of the frames at the end of a run, what its report shows.
+std::vector<ViewedFrame> viewed_frames(const SequenceRun& run) {
+  constexpr std::size_t kMostFrames = 1200;
+  return logged_frames(
+      {.trajectory = run.result.trajectory,
+       .keyframes = run.result.keyframes,
+       .objects_jsonl = run.objects_jsonl ? std::string_view(*run.objects_jsonl) : "",
+       .objects_name = "objects.jsonl",
+       .camera = run.report.camera,
+       .lost = run.report.lost},
+      kMostFrames);
 }
 
 }  // namespace
@@ -119,6 +134,7 @@ SequenceRun RunLog::finish(System& system) {
   report.frames_tracked = result.trajectory.size();
   report.estimate = result.trajectory;
   report.keyframes = result.keyframes;
+  report.viewed = viewed_frames(run);
   report.frames_elsewhere = result.frames_elsewhere;
   report.loops = result.loops;
   report.peak_memory_mb = peak_memory_mb();

@@ -112,6 +112,17 @@ ColorImage render_points(const PointCloud& cloud, const View& view) {
   return ColorImage(rendering.color);
 }
 
+std::vector<std::vector<Eigen::Vector3d>> continuous_parts(const Trajectory& poses) {
+  constexpr double kGap_s = 0.5;
+  std::vector<std::vector<Eigen::Vector3d>> parts;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (i == 0 || poses[i].stamp.seconds - poses[i - 1].stamp.seconds > kGap_s)
+      parts.emplace_back();
+    parts.back().push_back(poses[i].T_world_camera.translation());
+  }
+  return parts;
+}
+
 ColorImage draw_path(const ColorImage& picture,
                      const View& view,
                      std::span<const Eigen::Vector3d> path_world,

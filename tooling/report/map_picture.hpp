@@ -8,6 +8,7 @@
 
 #include "stillmap/core/images.hpp"
 #include "stillmap/core/point_cloud.hpp"
+#include "stillmap/core/trajectory.hpp"
 
 namespace stillmap {
 
@@ -39,6 +40,9 @@ struct View {
 /// Renders the cloud: the nearest point wins, of equally near ones the first in the cloud. Needs no
 /// window and no graphics hardware.
 [[nodiscard]] ColorImage render_points(const PointCloud& cloud, const View& view);
+
+/// The positions of the poses, cut at gaps of more than half a second.
+[[nodiscard]] std::vector<std::vector<Eigen::Vector3d>> continuous_parts(const Trajectory& poses);
 
 /// A copy of the picture with a line through the points drawn over it.
 [[nodiscard]] ColorImage draw_path(const ColorImage& picture,

@@ -146,5 +146,22 @@ TEST(DrawPath, GoesThroughItsPointsOnACopy) {
   EXPECT_EQ(pixel(blank, 20, 30), (Rgb{255, 255, 255}));
 }
 
+StampedPose pose_at(double seconds, const Eigen::Vector3d& place) {
+  StampedPose pose;
+  pose.stamp.seconds = seconds;
+  pose.T_world_camera.translation() = place;
+  return pose;
+}
+
+TEST(ContinuousParts, AreCutAtGaps) {
+  const Trajectory poses = {
+      pose_at(1.0, {0, 0, 0}), pose_at(1.5, {1, 0, 0}), pose_at(2.1, {2, 0, 0})};
+  const std::vector<std::vector<Eigen::Vector3d>> parts = continuous_parts(poses);
+  ASSERT_EQ(parts.size(), 2U);
+  EXPECT_EQ(parts[0].size(), 2U);
+  EXPECT_EQ(parts[1][0].x(), 2);
+  EXPECT_TRUE(continuous_parts({}).empty());
+}
+
 }  // namespace
 }  // namespace stillmap

@@ -9,6 +9,7 @@ namespace stillmap {
 
 [[nodiscard]] std::string_view page_html();  ///< with places for fill_template()
 [[nodiscard]] std::string_view page_css();
-[[nodiscard]] std::string_view map_view_js();
+[[nodiscard]] std::string_view
+map_scripts_js();  ///< map_figure.js with the modules that it imports
 
 }  // namespace stillmap

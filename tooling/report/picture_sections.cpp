@@ -4,9 +4,10 @@
 
 #include <fmt/core.h>
 
+#include "tooling/browser/scripts.hpp"
 #include "tooling/report/display_text.hpp"
+#include "tooling/report/map_message.hpp"
 #include "tooling/report/map_picture.hpp"
-#include "tooling/report/map_view_data.hpp"
 #include "tooling/report/map_views.hpp"
 #include "tooling/report/page_assets.hpp"
 #include "tooling/report/page_sections.hpp"
@@ -38,19 +39,44 @@ std::string map_figures(const RunReport& report, const SceneFrame& scene) {
 }
 
 const char* const kViewHtml = R"(<figure id="map-view" hidden>
-<canvas tabindex="0" aria-label="The map in three dimensions"></canvas>
+<div class="scene" data-tool="scene" aria-label="The map, the camera and objects in three dimensions"></div>
+<div class="tools" data-tool="frames">
+<button type="button" data-tool="play" aria-label="Play">&#9654;</button>
+<input type="range" data-tool="scrubber" min="0" max="0" value="0" aria-label="Frame">
+<output data-tool="time"></output>
+</div>
 <div class="tools">
-<button type="button" data-tool="reset">Reset</button>
+<button type="button" data-tool="whole">Whole</button>
 <button type="button" data-tool="above">From above</button>
-<label><input type="checkbox" data-tool="path" checked>trajectory</label>
-<label><input type="checkbox" data-tool="frusta" checked>key frames</label>
+<label><input type="checkbox" data-tool="path" checked>path</label>
+<label><input type="checkbox" data-tool="keyframes" checked>key frames</label>
+<label><input type="checkbox" data-tool="objects" checked>objects</label>
 <label><input type="checkbox" data-tool="ceiling" checked>ceiling</label>
 <label>point size <input type="range" data-tool="size" min="-2" max="2" step="0.1" value="0"></label>
 <span class="note">Drag to turn, right button or two fingers to move, click and wheel or pinch to zoom.</span>
 </div>
 </figure>
-<p id="map-note" class="note">The view that can be turned needs JavaScript and WebGL 2; here are pictures of the map.</p>
-)";
+<p id="map-note" class="note">)";
+
+std::string view_html() {
+  const char* const note =
+      three_min_js().empty()
+          ? "The program was built without libjs-three, with which the map can be turned; here are "
+            "pictures of it."
+          : "The view that can be turned needs JavaScript and WebGL; here are pictures of the map.";
+  return fmt::format("{}{}</p>\n", kViewHtml, note);
+}
+
+std::string view_scripts(const RunReport& report, const SceneFrame& scene) {
+  if (three_min_js().empty()) return "";
+  return fmt::format(
+      "<script type=\"text/plain\" id=\"map-data\">{}</script>\n<script>\n{}</script>\n"
+      "<script>\n{}</script>\n<script>\n{}</script>",
+      map_message(report, scene),
+      three_min_js(),
+      OrbitControls_js(),
+      map_scripts_js());
+}
 
 }  // namespace
 
@@ -68,17 +94,11 @@ MapHtml map_html(const RunReport& report) {
       size.x(),
       size.y(),
       size.z(),
-      report.map->size() > kMapViewPoints
-          ? fmt::format("Shown are {} of them. ", count_text(kMapViewPoints))
+      report.map->size() > kMapMessagePoints
+          ? fmt::format("Shown are {} of them. ", count_text(kMapMessagePoints))
           : "");
-  MapHtml html{
-      .section = summary + kViewHtml + map_figures(report, scene) + map_quality_html(report),
-      .script = {}};
-  html.script = fmt::format(
-      "<script type=\"application/json\" id=\"map-data\">{}</script>\n<script>\n{}</script>",
-      map_view_json(*report.map, scene, report.estimate, report.keyframes),
-      map_view_js());
-  return html;
+  return {.section = summary + view_html() + map_figures(report, scene) + map_quality_html(report),
+          .script = view_scripts(report, scene)};
 }
 
 }  // namespace stillmap

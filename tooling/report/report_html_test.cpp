@@ -12,6 +12,8 @@
 #include <fmt/core.h>
 #include <gmock/gmock.h>
 
+#include "tooling/browser/scripts.hpp"
+
 namespace stillmap {
 namespace {
 
@@ -154,7 +156,7 @@ TEST(ReportHtml, ShowsAllThatIsKnown) {
         "depth is sparse",
         "101.05: rgb/a.png: too short",
         "seed: 1",
-        "id=\"map-data\"",
+        "id=\"map-view\"",
         "2 tracked, 1 found but not tracked",
         "person #3: dynamic class",
         "the network's mask",
@@ -171,14 +173,29 @@ TEST(ReportHtml, ShowsAllThatIsKnown) {
   }
 }
 
+// What three.js could fetch, and does not: tests/report_browser_test.mjs watches it in a browser.
 TEST(ReportHtml, FetchesNothing) {
   const PointCloud map = wall();
-  const std::string page = report_html(full_report(map));
+  std::string page = report_html(full_report(map));
+  for (const std::string_view script : {three_min_js(), OrbitControls_js()}) {
+    const std::size_t at = page.find(script);
+    ASSERT_NE(at, std::string::npos);
+    page.erase(at, script.size());
+  }
   for (const char* const part :
        {"http:", "https:", "src=\"/", "@import", "url(", "<link", "fetch(", "XMLHttp"}) {
     EXPECT_THAT(page, Not(HasSubstr(part)));
   }
   EXPECT_THAT(page, HasSubstr("default-src 'none'"));
+}
+
+TEST(ReportHtml, HasItsScriptsInsideWhereTheyWereBuiltIn) {
+  const PointCloud map = wall();
+  const std::string page = report_html(full_report(map));
+  const bool is_built_in = !three_min_js().empty();
+  EXPECT_EQ(page.find("id=\"map-data\"") != std::string::npos, is_built_in);
+  EXPECT_EQ(page.find("built without libjs-three") == std::string::npos, is_built_in);
+  EXPECT_LT(page.size(), 1'200'000U);
 }
 
 TEST(ReportHtml, IsTheSameEachTime) {

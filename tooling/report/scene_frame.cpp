@@ -2,6 +2,7 @@
 #include "tooling/report/scene_frame.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -32,8 +33,10 @@ Eigen::AlignedBox3d inner_box(const std::vector<Eigen::Vector3d>& points) {
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<double> values;
     for (const Eigen::Vector3d& p : points) values.push_back(p[axis]);
-    std::sort(values.begin(), values.end());
+    const auto outer = static_cast<std::ptrdiff_t>(values.size() / 100);
+    std::nth_element(values.begin(), values.begin() + outer, values.end());
     low[axis] = values[values.size() / 100];
+    std::nth_element(values.begin(), values.end() - 1 - outer, values.end());
     high[axis] = values[values.size() - 1 - values.size() / 100];
   }
   box.extend(low);
@@ -45,11 +48,14 @@ Eigen::AlignedBox3d inner_box(const std::vector<Eigen::Vector3d>& points) {
 double height_concentration(const std::vector<Eigen::Vector3d>& points,
                             const Eigen::Vector3d& down) {
   constexpr double kBin_m = 0.04;
-  constexpr std::size_t kBins = 4096;  // heights that lie 164 m apart share one, which does no harm
-  std::vector<std::uint32_t> counts(kBins, 0);
+  constexpr std::uint32_t kBins =
+      4096;  // heights that lie 164 m apart share one, which does no harm
+  constexpr double kAboveZero = 1U << 30U;  // so that a conversion rounds down
+  const Eigen::Vector3d down_bins = down / kBin_m;
+  std::array<std::uint32_t, kBins> counts{};
   for (const Eigen::Vector3d& p : points) {
-    const double bin = std::floor(p.dot(down) / kBin_m);
-    ++counts[static_cast<std::size_t>(bin - kBins * std::floor(bin / kBins))];
+    const double bin = std::clamp(p.dot(down_bins) + kAboveZero, 0.0, 2 * kAboveZero);
+    ++counts[static_cast<std::uint32_t>(static_cast<std::int64_t>(bin)) % kBins];
   }
   double sum = 0;
   for (const std::uint32_t count : counts) sum += static_cast<double>(count) * count;
@@ -196,6 +202,13 @@ double head_height(const SceneFrame& scene) {
   constexpr double kHeadroom_m = 0.4;
   if (!scene.cameras.isEmpty()) return scene.cameras.center().y() - kHeadroom_m;
   return scene.box.isEmpty() ? 0.0 : scene.box.min().y() - kHeadroom_m;
+}
+
+SceneLayout scene_layout(const SceneFrame& scene) {
+  return {.R_level_world = scene.R_level_world,
+          .box = scene.box.isEmpty() ? scene.box : scene.box.merged(scene.cameras),
+          .head_y = head_height(scene),
+          .spacing_m = scene.spacing_m};
 }
 
 View view_from_above(const SceneFrame& scene, int width_px, int height_px) {

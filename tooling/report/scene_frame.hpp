@@ -9,6 +9,7 @@
 
 #include "stillmap/core/point_cloud.hpp"
 #include "stillmap/core/trajectory.hpp"
+#include "tooling/browser/scene_message.hpp"
 #include "tooling/report/map_picture.hpp"
 
 namespace stillmap {
@@ -50,6 +51,9 @@ struct GazeTurn {
 /// Level y coordinate slightly above the cameras: points with a smaller y hang over their heads.
 /// Without cameras, the top of the map.
 [[nodiscard]] double head_height(const SceneFrame& scene);
+
+/// The same for pages.
+[[nodiscard]] SceneLayout scene_layout(const SceneFrame& scene);
 
 /// An orthographic view from above, without points that hang over the cameras' heads.
 [[nodiscard]] View view_from_above(const SceneFrame& scene, int width_px, int height_px);

@@ -123,21 +123,26 @@ std::vector<std::uint16_t> feature_marks(const ViewedSample& sample) {
 MaskRuns mask_runs(const ViewedSample& sample, int width_px) {
   const auto& [frame, result] = sample;
   const cv::Mat3b& image = frame.color.mat;
-  const std::array<const cv::Mat1b*, 3> masks = {
-      &result.network_mask.mat, &result.extended_mask.mat, &result.depth_jumps.mat};
-  MaskRuns reduced;
-  if (image.empty() ||
-      std::ranges::none_of(masks, [&](const cv::Mat1b* mask) { return fits(*mask, image); })) {
-    return reduced;
+  struct FittingMask {
+    const cv::Mat1b* mask;
+    unsigned bit;
+  };
+  std::vector<FittingMask> masks;
+  for (const FittingMask& candidate : {FittingMask{&result.network_mask.mat, 1},
+                                       FittingMask{&result.extended_mask.mat, 2},
+                                       FittingMask{&result.depth_jumps.mat, 4}}) {
+    if (fits(*candidate.mask, image)) masks.push_back(candidate);
   }
+  MaskRuns reduced;
+  if (masks.empty()) return reduced;
   const int step = std::max(1, (image.cols + width_px - 1) / width_px);
   reduced.width_px = (image.cols + step - 1) / step;
   reduced.height_px = (image.rows + step - 1) / step;
   for (int row = 0; row < image.rows; row += step) {
     for (int column = 0; column < image.cols; column += step) {
       unsigned bits = 0;
-      for (std::size_t i = 0; i < masks.size(); ++i) {
-        if (fits(*masks[i], image) && (*masks[i])(row, column) != 0) bits |= 1U << i;
+      for (const FittingMask& fitting : masks) {
+        if ((*fitting.mask)(row, column) != 0) bits |= fitting.bit;
       }
       std::vector<std::uint16_t>& runs = reduced.runs;
       if (runs.empty() || runs[runs.size() - 2] != bits || runs.back() == kLongestRun) {

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "tooling/browser/viewed_frame.hpp"
 #include "tooling/view/frame_sample.hpp"
-#include "tooling/view/viewed_frame.hpp"
 
 namespace stillmap {
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 
+#include "tooling/browser/scripts.hpp"
+
 namespace stillmap {
 namespace {
 
@@ -16,19 +18,25 @@ struct NamedFile {
   std::string_view type;
 };
 constexpr std::string_view kScript = "text/javascript; charset=utf-8";
-constexpr std::array<NamedFile, 13> kFiles = {
+constexpr std::array<NamedFile, 19> kFiles = {
     {{"", index_html, "text/html; charset=utf-8"},
      {"viewer.css", viewer_css, "text/css; charset=utf-8"},
      {"three.min.js", three_min_js, kScript},
      {"OrbitControls.js", OrbitControls_js, kScript},
      {"cameras.js", cameras_js, kScript},
+     {"keys.js", keys_js, kScript},
+     {"labels.js", labels_js, kScript},
      {"main.js", main_js, kScript},
+     {"message.js", message_js, kScript},
      {"objects.js", objects_js, kScript},
      {"panel.js", panel_js, kScript},
      {"picture.js", picture_js, kScript},
      {"points.js", points_js, kScript},
      {"records.js", records_js, kScript},
+     {"run_scene.js", run_scene_js, kScript},
      {"scene.js", scene_js, kScript},
+     {"scrubber.js", scrubber_js, kScript},
+     {"shading.js", shading_js, kScript},
      {"socket.js", socket_js, kScript}}};
 
 }  // namespace

@@ -9,16 +9,9 @@ namespace stillmap {
 // The texts of the files of these names, embedded when building.
 [[nodiscard]] std::string_view index_html();
 [[nodiscard]] std::string_view viewer_css();
-[[nodiscard]] std::string_view three_min_js();
-[[nodiscard]] std::string_view OrbitControls_js();  // NOLINT(readability-identifier-naming)
-[[nodiscard]] std::string_view cameras_js();
 [[nodiscard]] std::string_view main_js();
-[[nodiscard]] std::string_view objects_js();
 [[nodiscard]] std::string_view panel_js();
 [[nodiscard]] std::string_view picture_js();
-[[nodiscard]] std::string_view points_js();
-[[nodiscard]] std::string_view records_js();
-[[nodiscard]] std::string_view scene_js();
 [[nodiscard]] std::string_view socket_js();
 
 /// A file of the page.

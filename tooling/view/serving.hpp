@@ -39,7 +39,7 @@ class ViewServing {
   // For connections and pages:
   /// What follows the token in a path; nothing for a path with another token or none.
   [[nodiscard]] std::optional<std::string_view> name_in(std::string_view path) const;
-  [[nodiscard]] const ViewState& state() const { return state_; }
+  [[nodiscard]] ViewState& state() { return state_; }
   void open(const std::shared_ptr<OpenPage>& page);
   void close(const std::shared_ptr<OpenPage>& page);
   /// Held by everything that has a connection.

@@ -10,7 +10,6 @@
 
 #include "tooling/pipeline/lasting_tracks.hpp"
 #include "tooling/report/frame_picture.hpp"
-#include "tooling/report/map_view_data.hpp"
 #include "tooling/report/scene_frame.hpp"
 
 namespace stillmap {
@@ -21,34 +20,20 @@ using Json = nlohmann::ordered_json;
 constexpr int kPictureWidth_px = 320;
 constexpr int kMaskWidth_px = 160;
 constexpr int kGhostPixels = 160;
-// scene_frame() tries some 2000 directions with every point.
-constexpr std::size_t kLevelPoints = 4000;
+constexpr std::size_t kMostKeyframes = 2000;
+constexpr std::size_t kLayoutPoints = 40'000;  // enough to know how a map lies
 
 std::string dumped(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-Json start_json(const ViewStart& start) {
+Json legend_json() {
   Json styles = Json::array();
   for (const VerdictStyle& style : verdict_styles()) {
     styles.push_back({{"name", style.name}, {"radius", style.radius_px}, {"color", style.color}});
   }
-  Json json = {{"version", 1},
-               {"title", start.title},
-               {"frames", start.frames ? Json(*start.frames) : Json()},
-               {"side", PointChunks::kSide_m},
-               {"styles", styles},
-               {"masks", {MaskStyle::kNetwork, MaskStyle::kExtended, MaskStyle::kJumps}}};
-  if (start.camera) {
-    const CameraModel& camera = *start.camera;
-    json["camera"] = {{"width", camera.width_px},
-                      {"height", camera.height_px},
-                      {"fx", camera.fx},
-                      {"fy", camera.fy},
-                      {"cx", camera.cx},
-                      {"cy", camera.cy}};
-  }
-  return json;
+  return {{"styles", styles},
+          {"masks", {MaskStyle::kNetwork, MaskStyle::kExtended, MaskStyle::kJumps}}};
 }
 
 PointCloud spread(const PointCloud& cloud, std::size_t limit) {
@@ -83,11 +68,11 @@ void ViewState::apply(ViewInbox::Contents news) {
   if (news.newest) newest_ = std::move(news.newest);
   for (const ViewedSample& sample : news.for_map) grow(sample);
   if (news.dropped + news.left_out > 0) {
-    dropped_ += news.dropped;
-    left_out_ += news.left_out;
+    state_.dropped += news.dropped;
+    state_.left_out += news.left_out;
     ++state_version_;
   }
-  if (news.end) finish(std::move(*news.end));
+  if (news.end) end_ = std::move(news.end);
 }
 
 void ViewState::add_frame(ViewedFrame frame) {
@@ -98,14 +83,16 @@ void ViewState::add_frame(ViewedFrame frame) {
 }
 
 void ViewState::grow(const ViewedSample& sample) {
-  if (!growing_ || finished_) return;
+  if (!growing_) return;
   map_.add(growing_->add(sample));
 }
 
-void ViewState::find_level(const PointCloud& cloud, const Trajectory& cameras) {
-  if (cloud.empty()) return;
-  R_level_world_ = scene_frame(cloud, cameras).R_level_world;
-  ++state_version_;
+void ViewState::find_layout(const PointCloud& map, const Trajectory& cameras) {
+  if (map.empty()) return;
+  const PointCloud some = spread(map, kLayoutPoints);
+  state_.layout = scene_layout(scene_frame(some, cameras));
+  state_.layout.spacing_m *=
+      std::sqrt(static_cast<double>(some.size()) / static_cast<double>(map.size()));
 }
 
 void ViewState::finish(ViewedEnd end) {
@@ -129,18 +116,22 @@ void ViewState::finish(ViewedEnd end) {
   map_.add(end.map);
   ++map_version_;
   growing_.reset();
-  keyframes_ = std::move(end.keyframes);
-  finished_ = true;
+  state_.keyframes = std::move(end.keyframes);
+  state_.finished = true;
   ++state_version_;
-  find_level(spread(end.map, kLevelPoints), end.trajectory);
+  find_layout(end.map, end.trajectory);
 }
 
-std::string ViewState::next_message(PageProgress& progress) const {
+std::string ViewState::next_message(PageProgress& progress) {
+  if (end_) finish(*std::exchange(end_, std::nullopt));
   Message message;
-  if (!std::exchange(progress.started, true)) message.add("start", dumped(start_json(start_)));
+  if (!std::exchange(progress.started, true)) {
+    message.add("start", start_json(start_));
+    message.add("legend", dumped(legend_json()));
+  }
   add_state(message, progress);
   const bool more_frames = add_frames(message, progress);
-  const bool more_points = add_points(message, progress);
+  const bool more_points = add_map(message, progress);
   add_picture(message, progress);
   if (message.empty()) return {};
   if (more_frames || more_points) message.add("more", "true");
@@ -149,24 +140,7 @@ std::string ViewState::next_message(PageProgress& progress) const {
 
 void ViewState::add_state(Message& message, PageProgress& progress) const {
   if (std::exchange(progress.state_version, state_version_) == state_version_) return;
-  Json level = Json::array();
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) level.push_back(R_level_world_(row, column));
-  }
-  Json json = {{"dropped", dropped_}, {"leftOut", left_out_}, {"level", std::move(level)}};
-  if (finished_) {
-    Json keyframes = Json::array();
-    for (const std::size_t i : evenly_spread(keyframes_.size(), 2000)) {
-      const ViewedFrame frame{.stamp = keyframes_[i].stamp,
-                              .status = TrackingStatus::kTracked,
-                              .T_world_camera = keyframes_[i].T_world_camera,
-                              .objects = {}};
-      keyframes.push_back(Json::parse(frame_json(frame))["p"]);
-    }
-    json["keyframes"] = std::move(keyframes);
-    json["finished"] = true;
-  }
-  message.add("state", dumped(json));
+  message.add("state", state_json(state_, kMostKeyframes));
 }
 
 bool ViewState::add_frames(Message& message, PageProgress& progress) const {
@@ -178,42 +152,17 @@ bool ViewState::add_frames(Message& message, PageProgress& progress) const {
   const std::size_t begin = std::max(progress.next_frame, first_frame_);
   if (begin >= end) return false;
   const std::size_t stop = std::min(end, begin + kMessageFrames);
-  std::string list = "[";
-  for (std::size_t i = begin; i < stop; ++i) {
-    if (i > begin) list += ',';
-    list += frame_json(frames_[i - first_frame_]);
-  }
-  message.add("frames", list + ']');
+  message.add("frames", frames_json(frames_, begin - first_frame_, stop - first_frame_));
   progress.next_frame = stop;
   return stop < end;
 }
 
-bool ViewState::add_points(Message& message, PageProgress& progress) const {
+bool ViewState::add_map(Message& message, PageProgress& progress) const {
   if (std::exchange(progress.map_version, map_version_) != map_version_) {
     progress.points.clear();
     message.add("pointsAnew", "true");
   }
-  progress.points.resize(map_.chunks().size(), 0);
-  Json parts = Json::array();
-  std::size_t room = kMessagePoints;
-  bool more = false;
-  for (std::size_t i = 0; i < map_.chunks().size(); ++i) {
-    const PointChunk& chunk = map_.chunks()[i];
-    std::size_t& sent = progress.points[i];
-    const std::size_t count = std::min(chunk.size() - sent, room);
-    more = more || count < chunk.size() - sent;
-    if (count == 0) continue;
-    const auto positions = std::span(chunk.positions).subspan(3 * sent, 3 * count);
-    const auto colors = std::span(chunk.colors).subspan(3 * sent, 3 * count);
-    const std::size_t positions_at = message.attach(positions);
-    const std::size_t colors_at = message.attach(colors);
-    parts.push_back(
-        {i, chunk.cell[0], chunk.cell[1], chunk.cell[2], count, positions_at, colors_at});
-    sent += count;
-    room -= count;
-  }
-  if (!parts.empty()) message.add("points", dumped(parts));
-  return more;
+  return add_points(message, map_, progress.points, kMessagePoints);
 }
 
 void ViewState::add_picture(Message& message, PageProgress& progress) const {

@@ -8,20 +8,14 @@
 #include <string>
 #include <vector>
 
+#include "tooling/browser/message.hpp"
+#include "tooling/browser/point_chunks.hpp"
+#include "tooling/browser/scene_message.hpp"
+#include "tooling/browser/viewed_frame.hpp"
 #include "tooling/view/frame_sample.hpp"
 #include "tooling/view/inbox.hpp"
-#include "tooling/view/message.hpp"
-#include "tooling/view/point_chunks.hpp"
-#include "tooling/view/viewed_frame.hpp"
 
 namespace stillmap {
-
-/// What a page is told first.
-struct ViewStart {
-  std::string title;                  ///< any text
-  std::optional<std::size_t> frames;  ///< how many there will be, if known
-  std::optional<CameraModel> camera;  ///< none: no frustum, no pictures
-};
 
 /// What a page already has.
 struct PageProgress {
@@ -45,7 +39,7 @@ class ViewState {
   /// The next message to a page, which then has `progress`; empty if it lacks nothing. A message
   /// has at most kMessageFrames records and about kMessagePoints points; `"more"` says that there
   /// is another.
-  [[nodiscard]] std::string next_message(PageProgress& progress) const;
+  [[nodiscard]] std::string next_message(PageProgress& progress);
 
   static constexpr std::size_t kMessageFrames = 500;
   static constexpr std::size_t kMessagePoints = 100'000;
@@ -54,14 +48,15 @@ class ViewState {
  private:
   void add_frame(ViewedFrame frame);
   void grow(const ViewedSample& sample);
-  void find_level(const PointCloud& cloud, const Trajectory& cameras);
+  void find_layout(const PointCloud& map, const Trajectory& cameras);
   void finish(ViewedEnd end);
   bool add_frames(Message& message, PageProgress& progress) const;
-  bool add_points(Message& message, PageProgress& progress) const;
+  bool add_map(Message& message, PageProgress& progress) const;
   void add_picture(Message& message, PageProgress& progress) const;
   void add_state(Message& message, PageProgress& progress) const;
 
   ViewStart start_;
+  std::optional<ViewedEnd> end_;  // until a page asks for it, which may never be
   std::deque<ViewedFrame> frames_;
   std::size_t first_frame_ = 0;       // the place of frames_[0] among the run's frames
   std::uint64_t frames_version_ = 1;  // grows when records that pages have were changed
@@ -73,13 +68,8 @@ class ViewState {
   std::optional<PixelGrid> ghost_grid_;
   std::optional<ViewedSample> newest_;
 
-  // Of the small things that are sent as a whole.
   std::uint64_t state_version_ = 1;
-  std::size_t dropped_ = 0;
-  std::size_t left_out_ = 0;
-  Eigen::Matrix3d R_level_world_ = Eigen::Matrix3d::Identity();
-  bool finished_ = false;
-  Trajectory keyframes_;  // of a finished run
+  SceneState state_;
 };
 
 }  // namespace stillmap

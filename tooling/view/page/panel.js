@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Figures, times and the list of objects.
-import { colorOf } from "./objects.js";
+import { colorOf, isMoving } from "./objects.js";
 
 const SHOWN_FRAMES = 200;
 
@@ -87,11 +87,12 @@ export class Panel {
   }
 
   showObjects(known) {
-    const speed = ({ object }) => Math.hypot(...object.v);
+    const motion = ({ m, v }) => isMoving({ m }) ? `${m}, ${Math.hypot(...v).toFixed(2)} m/s` : m;
     const rows = [...known].sort((a, b) => (b.object.d || 0) - (a.object.d || 0) || a.object.i - b.object.i);
     element("objects").replaceChildren(...rows.map((entry) => line(
       ["b", `${entry.object.c} ${entry.object.i}`, colorOf(entry.object)],
-      ["span", entry.object.d ? `${entry.object.m}, ${speed(entry).toFixed(2)} m/s` : entry.object.m])));
+      ["span", motion(entry.object)])));
+    element("objects").parentElement.hidden = rows.length === 0;
   }
 
   setStatus(text, isGood) {

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The camera's image with masks, features and boxes.
+import { LabelPlaces } from "./labels.js";
+import { colorOf } from "./objects.js";
+
+const NAME_PX = 16, NAME_ROWS = 5;  // the height of a name on the page
 
 const css = (color) => `rgb(${color[0]},${color[1]},${color[2]})`;
 
@@ -94,18 +98,22 @@ export class PicturePane {
   }
 
   drawBoxes(context, objects, scale) {
-    context.font = "600 15px system-ui, sans-serif";
-    context.lineWidth = 1.5;
-    for (const object of objects || []) {
+    const onPage = this.canvas.width / Math.max(1, this.canvas.clientWidth), high = NAME_PX * onPage;
+    context.font = `600 ${0.75 * high}px system-ui, sans-serif`;
+    context.lineWidth = 1.2 * onPage;
+    const places = new LabelPlaces();
+    for (const object of [...objects || []].sort((a, b) => (b.d || 0) - (a.d || 0))) {
       const [x0, y0, x1, y1] = object.b.map((value) => value * scale);
-      const color = object.d ? "#ff7f5c" : "#7fd4ff";
-      context.strokeStyle = color;
+      context.strokeStyle = context.fillStyle = colorOf(object);
       context.strokeRect(x0, y0, x1 - x0, y1 - y0);
-      const text = `${object.c} ${object.i}`, top = Math.max(0, y0 - 18);
+      const text = `${object.c} ${object.i}`, width = context.measureText(text).width + 0.4 * high;
+      const left = Math.max(0, Math.min(x0, this.canvas.width - width)), top = Math.max(0, y0 - high);
+      const row = places.take(left, top, width, high, high, NAME_ROWS);
+      if (row === undefined) continue;
       context.fillStyle = "rgba(10,12,16,.75)";
-      context.fillRect(x0, top, context.measureText(text).width + 8, 18);
-      context.fillStyle = color;
-      context.fillText(text, x0 + 4, top + 14);
+      context.fillRect(left, top + row * high, width, high);
+      context.fillStyle = colorOf(object);
+      context.fillText(text, left + 0.2 * high, top + (row + 0.76) * high);
     }
   }
 }

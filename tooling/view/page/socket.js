@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The connection to the program: asks for a message, gives it on, asks for the next (docs/view.md).
+import { parseMessage } from "./message.js";
 
 const SHORTEST_PAUSE_MS = 140;
 const LONGEST_RETRY_MS = 5000;
-
-// The head of a message, and its body.
-export function parseMessage(buffer) {
-  const length = new DataView(buffer).getUint32(0, true);
-  const head = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, length)));
-  return { head, body: buffer.slice(4 + length) };
-}
 
 // onMessage(head, body); onConnected(true or false). Connects again when the connection is lost.
 export function connect(onMessage, onConnected) {

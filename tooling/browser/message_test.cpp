@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tooling/view/message.hpp"
+#include "tooling/browser/message.hpp"
 
 #include <cstdint>
 #include <string>

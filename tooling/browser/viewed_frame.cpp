@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tooling/view/viewed_frame.hpp"
+#include "tooling/browser/viewed_frame.hpp"
 
 #include <algorithm>
 #include <array>
@@ -21,7 +21,7 @@ Json short_vector(const Eigen::Vector3d& v) {
   return {short_number(v.x()), short_number(v.y()), short_number(v.z())};
 }
 
-Json pose_json(const Eigen::Isometry3d& T) {
+Json pose_numbers(const Eigen::Isometry3d& T) {
   const Eigen::Quaterniond q(T.linear());
   Json numbers = Json::array();
   for (const double value : {T.translation().x(),
@@ -95,6 +95,10 @@ ViewedFrame viewed_frame(const FrameResult& result, const CameraModel& camera) {
   return frame;
 }
 
+std::string pose_json(const Eigen::Isometry3d& T_world_camera) {
+  return pose_numbers(T_world_camera).dump();
+}
+
 std::string frame_json(const ViewedFrame& frame) {
   Json record = {{"n", frame.number},
                  {"t", frame.stamp.seconds},
@@ -102,7 +106,7 @@ std::string frame_json(const ViewedFrame& frame) {
                  {"ms", short_number(frame.pose_ms)},
                  {"f", frame.tracked_features}};
   if (frame.keyframe) record["k"] = 1;
-  if (frame.status != TrackingStatus::kLost) record["p"] = pose_json(frame.T_world_camera);
+  if (frame.status != TrackingStatus::kLost) record["p"] = pose_numbers(frame.T_world_camera);
   Json objects = Json::array();
   for (const ViewedObject& object : frame.objects) objects.push_back(object_record(object));
   if (!objects.empty()) record["o"] = std::move(objects);

@@ -2,14 +2,17 @@
 // What the page knows of the run: the records of its frames, and some of its pictures.
 
 const MOST_PICTURES = 600;
-const STATIC_SECONDS = 10;  // for which a static object is shown after it was last seen
+const STATIC_SECONDS = 10;  // for which an object at rest is shown after it was last seen
 const MOVING_SECONDS = 0.5;
 const SURE_SIGHTINGS = 5;   // before an object that does not move is shown
 
 export class Records {
   constructor() { this.clear(); }
 
-  clear() {
+  // `step_s`: of the frames that tell their objects, where not all of them do.
+  clear(step_s = 0) {
+    this.staticSeconds = Math.max(STATIC_SECONDS, 12 * step_s);
+    this.movingSeconds = Math.max(MOVING_SECONDS, 1.5 * step_s);
     this.frames = [];
     this.placeOf = new Map();  // of a frame's number in `frames`
     this.pictures = new Map();  // by the frame's number, in order
@@ -54,7 +57,7 @@ export class Records {
   objectsAt(place) {
     const now = this.frames[place];
     const seen = new Map();
-    for (let i = place; i >= 0 && now.t - this.frames[i].t < STATIC_SECONDS; --i) {
+    for (let i = place; i >= 0 && now.t - this.frames[i].t < this.staticSeconds; --i) {
       const frame = this.frames[i];
       for (const object of frame.o || []) {
         if (!object.p) continue;
@@ -64,6 +67,6 @@ export class Records {
       }
     }
     return [...seen.values()].filter(({ object, frame, sightings }) =>
-      object.d ? now.t - frame.t < MOVING_SECONDS : sightings >= SURE_SIGHTINGS);
+      object.d ? now.t - frame.t < this.movingSeconds : sightings >= SURE_SIGHTINGS);
   }
 }

@@ -2,14 +2,19 @@
 // Objects with their names, boxes and velocities, and what moves as ghosts: its points where the
 // image of the frame is at hand, else a shape of its size.
 import { poseMatrix } from "./cameras.js";
+import { LabelPlaces } from "./labels.js";
 
 const SLOWEST_M_S = 0.12;  // that an arrow is drawn for
 const MOVING_COLORS = ["#ff7f5c", "#ffb347", "#ff6fae", "#ffd166", "#c792ea", "#ff9d9d"];
 const RESTING_COLOR = "#7fd4ff";
+const NAME_PX = 19, NAME_ROWS = 6;  // the height of a name on the page; the rows that it may be moved up
 
 export function colorOf(object) {
   return object.d ? MOVING_COLORS[object.i % MOVING_COLORS.length] : RESTING_COLOR;
 }
+
+// Whether an object is known to move: what has no such motion may have a velocity that is noise.
+export function isMoving(object) { return object.m.startsWith("mov"); }
 
 function nameSprite(text, color) {
   const canvas = document.createElement("canvas");
@@ -24,8 +29,7 @@ function nameSprite(text, color) {
   const texture = new THREE.CanvasTexture(canvas);
   texture.minFilter = THREE.LinearFilter;
   const sprite = new THREE.Sprite(new THREE.SpriteMaterial({ map: texture, depthTest: false, sizeAttenuation: false }));
-  sprite.scale.set(0.0009 * canvas.width, 0.0009 * canvas.height, 1);  // the same at every distance
-  sprite.center.set(0.5, 0);
+  sprite.aspect = canvas.width / canvas.height;
   sprite.renderOrder = 2;
   return sprite;
 }
@@ -38,6 +42,7 @@ class Figure {
   constructor(object) {
     const color = colorOf(object);
     this.color = color;
+    this.moves = Boolean(object.d);
     this.group = new THREE.Group();
     this.box = new THREE.LineSegments(BOX, new THREE.LineBasicMaterial({
       color, transparent: true, opacity: object.d ? 0.9 : 0.5 }));
@@ -60,11 +65,24 @@ class Figure {
     this.name.position.set(0, size.y / 2 + 0.04, 0);
     this.shape.visible = Boolean(object.d) && !hasGhost;
     const speed = velocity.length();
-    this.arrow.visible = speed > SLOWEST_M_S;
+    this.arrow.visible = isMoving(object) && speed > SLOWEST_M_S;
     if (this.arrow.visible) {
       this.arrow.setDirection(velocity.clone().normalize());
       this.arrow.setLength(Math.min(2, speed) * 0.6 + 0.1, 0.1, 0.06);
     }
+  }
+
+  // Places the name for an eye, beside those placed before; hides it where there is no room.
+  placeName(eye, width_px, height_px, places) {
+    const at = this.name.getWorldPosition(new THREE.Vector3()).project(eye);
+    const isAhead = Math.abs(at.z) < 1 && Math.abs(at.x) < 1.1 && Math.abs(at.y) < 1.1;
+    const x = (at.x + 1) / 2 * width_px, y = (1 - at.y) / 2 * height_px, wide = NAME_PX * this.name.aspect;
+    const row = isAhead ? places.take(x - wide / 2, y - NAME_PX, wide, NAME_PX, -NAME_PX, NAME_ROWS) : undefined;
+    this.name.visible = row !== undefined;
+    if (!this.name.visible) return;
+    const scale = 2 * NAME_PX / height_px / eye.projectionMatrix.elements[5];  // the same at every distance
+    this.name.scale.set(scale * this.name.aspect, scale, 1);
+    this.name.center.set(0.5, -row);
   }
 
   dispose() {
@@ -94,6 +112,17 @@ export class Objects {
   setVisible(visible) {
     this.all.visible = visible;
     this.ghost.visible = visible && this.hasGhost;
+  }
+
+  // What moves gets its name first, then what is near.
+  placeNames(eye, width_px, height_px) {
+    const places = new LabelPlaces();
+    const rank = (figure) => (figure.moves ? 0 : 1000) + figure.group.position.distanceTo(eye.position);
+    eye.updateMatrixWorld();
+    this.all.updateMatrixWorld();
+    for (const figure of [...this.figures.values()].sort((a, b) => rank(a) - rank(b))) {
+      figure.placeName(eye, width_px, height_px, places);
+    }
   }
 
   // `known` as Records.objectsAt gives it; `frame` and `picture` of now.

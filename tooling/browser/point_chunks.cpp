@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tooling/view/point_chunks.hpp"
+#include "tooling/browser/point_chunks.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -32,13 +32,13 @@ export class CameraFigure {
     group.add(this.object);
   }
 
-  // `canvas`: what it sees; none without a camera.
+  // `canvas`: what it sees, if that is known.
   setCamera(camera, canvas) {
     this.object.remove(...this.object.children);
     const distance = 0.42;
     const lines = new THREE.BufferGeometry().setFromPoints(pyramidEdges(camera || TYPICAL, distance));
     this.object.add(new THREE.LineSegments(lines, new THREE.LineBasicMaterial({ color: 0xffd166 })));
-    if (!camera) return;
+    if (!camera || !canvas) return;
     const [a, b, c, d] = corners(camera, distance);
     const plane = new THREE.BufferGeometry().setFromPoints([a, b, c, a, c, d]);
     plane.setAttribute("uv", new THREE.Float32BufferAttribute([0, 1, 1, 1, 1, 0, 0, 1, 1, 0, 0, 0], 2));
@@ -94,6 +94,13 @@ export class Path {
     }
     this.last = pose || null;
     this.ends.push(this.segments);
+  }
+
+  // About `count` of its places, in world coordinates.
+  sample(count) {
+    const every = Math.max(1, Math.floor(this.segments / count)), places = this.last ? [this.last] : [];
+    for (let i = 0; i < this.segments; i += every) places.push(this.positions.slice(6 * i, 6 * i + 3));
+    return places;
   }
 
   showUpTo(place) { this.object.geometry.setDrawRange(0, 2 * (this.ends[place] || 0)); }

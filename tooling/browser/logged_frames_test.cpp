@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tooling/view/logged_frames.hpp"
+#include "tooling/browser/logged_frames.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -69,6 +69,38 @@ TEST(LoggedFrames, RefuseOtherLinesWithTheirNumber) {
     } catch (const Error& error) {
       EXPECT_THAT(error.what(), testing::StartsWith("objects.jsonl:2: "));
     }
+  }
+}
+
+TEST(LoggedFrames, AreThoseOfTheTrajectoryAndTheLostOnesInOrder) {
+  const std::vector<ViewedFrame> frames =
+      logged_frames({.trajectory = poses_at({"1", "3"}), .lost = {{2, "2"}}});
+  ASSERT_EQ(frames.size(), 3U);
+  EXPECT_EQ(frames[1].stamp.text, "2");
+  EXPECT_EQ(frames[1].status, TrackingStatus::kLost);
+  EXPECT_EQ(frames[2].status, TrackingStatus::kTracked);
+}
+
+TEST(LoggedFrames, AreEvenlySpreadWhereTheyAreTooMany) {
+  const std::vector<ViewedFrame> frames = logged_frames({.objects_jsonl = kLines}, 1);
+  ASSERT_EQ(frames.size(), 1U);
+  EXPECT_EQ(frames[0].stamp.text, "1.5");
+  const std::vector<ViewedFrame> some =
+      logged_frames({.trajectory = poses_at({"0", "1", "2", "3"})}, 2);
+  ASSERT_EQ(some.size(), 2U);
+  EXPECT_EQ(some[1].number, 2U);
+}
+
+TEST(LoggedDrops, AreThoseOfALiveRun) {
+  EXPECT_EQ(logged_drops(R"({"live": {"dropped": 7}})"), 7U);
+  for (const char* other : {"",
+                            "x",
+                            "[]",
+                            "{}",
+                            R"({"live": null})",
+                            R"({"live": {"dropped": -1}})",
+                            R"({"live": {"dropped": "7"}})"}) {
+    EXPECT_EQ(logged_drops(other), 0U) << other;
   }
 }
 

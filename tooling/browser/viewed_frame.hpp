@@ -13,7 +13,7 @@
 
 namespace stillmap {
 
-/// An object as the viewer shows it. World coordinates, metres.
+/// An object as pages show it. World coordinates, metres.
 struct ViewedObject {
   std::uint32_t track = 0;
   std::string class_name;
@@ -26,7 +26,7 @@ struct ViewedObject {
   Eigen::Vector3d size_m = Eigen::Vector3d::Zero();
 };
 
-/// What the viewer keeps of every frame.
+/// What pages show of a frame.
 struct ViewedFrame {
   std::uint32_t number = 0;  ///< in its sequence
   Stamp stamp;
@@ -45,8 +45,11 @@ struct ViewedFrame {
                                         const std::optional<DepthInterval>& depths,
                                         const CameraModel& camera);
 
-/// What the viewer keeps of a frame's result.
+/// What pages show of a frame's result.
 [[nodiscard]] ViewedFrame viewed_frame(const FrameResult& result, const CameraModel& camera);
+
+/// A JSON list: position in metres, quaternion x y z w, camera to world.
+[[nodiscard]] std::string pose_json(const Eigen::Isometry3d& T_world_camera);
 
 /// A JSON object: `{"n","t","s","ms","f"}` (number, stamp in seconds, status, time to the pose,
 /// tracked features), `"k":1` for a key frame, `"p"` (position, quaternion x y z w) with a pose,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tooling/view/logged_frames.hpp"
+#include "tooling/browser/logged_frames.hpp"
 
 #include <algorithm>
 #include <exception>
@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "stillmap/core/error.hpp"
+#include "tooling/browser/scene_message.hpp"
 
 namespace stillmap {
 namespace {
@@ -46,19 +47,40 @@ ViewedFrame logged_frame(std::string_view line) {
   return frame;
 }
 
-std::vector<ViewedFrame> frames_of_objects(const LoggedRun& run) {
+std::vector<std::string_view> lines_of(std::string_view text) {
+  std::vector<std::string_view> lines;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    lines.push_back(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return lines;
+}
+
+std::vector<ViewedFrame> frames_of_objects(const LoggedRun& run, std::size_t most) {
+  const std::vector<std::string_view> lines = lines_of(run.objects_jsonl);
   std::vector<ViewedFrame> frames;
-  std::string_view rest = run.objects_jsonl;
-  while (!rest.empty()) {
-    const std::size_t end = std::min(rest.find('\n'), rest.size());
+  for (const std::size_t i : evenly_spread(lines.size(), most)) {
     try {
-      frames.push_back(logged_frame(rest.substr(0, end)));
+      frames.push_back(logged_frame(lines[i]));
+      frames.back().number = static_cast<std::uint32_t>(i);
     } catch (const std::exception&) {
-      throw Error("{}:{}: expected a line of objects as `stillmap run` writes it",
-                  run.objects_name,
-                  frames.size() + 1);
+      throw Error(
+          "{}:{}: expected a line of objects as `stillmap run` writes it", run.objects_name, i + 1);
     }
-    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  return frames;
+}
+
+std::vector<ViewedFrame> frames_of_trajectory(const LoggedRun& run, std::size_t most) {
+  std::vector<Stamp> stamps = run.lost;
+  for (const StampedPose& pose : run.trajectory) stamps.push_back(pose.stamp);
+  std::ranges::stable_sort(stamps, {}, &Stamp::seconds);
+  std::vector<ViewedFrame> frames;
+  for (const std::size_t i : evenly_spread(stamps.size(), most)) {
+    frames.emplace_back();
+    frames.back().number = static_cast<std::uint32_t>(i);
+    frames.back().stamp = stamps[i];
   }
   return frames;
 }
@@ -78,26 +100,27 @@ void add_pose(ViewedFrame& frame,
 
 }  // namespace
 
-std::vector<ViewedFrame> logged_frames(const LoggedRun& run) {
-  std::vector<ViewedFrame> frames = frames_of_objects(run);
-  if (frames.empty()) {
-    for (const StampedPose& pose : run.trajectory) {
-      frames.emplace_back();
-      frames.back().stamp = pose.stamp;
-    }
-  }
+std::vector<ViewedFrame> logged_frames(const LoggedRun& run, std::size_t most) {
+  std::vector<ViewedFrame> frames =
+      run.objects_jsonl.empty() ? frames_of_trajectory(run, most) : frames_of_objects(run, most);
   std::map<std::string, Eigen::Isometry3d> poses;
   for (const StampedPose& pose : run.trajectory) poses[pose.stamp.text] = pose.T_world_camera;
   std::set<std::string> keyframes;
   for (const StampedPose& pose : run.keyframes) keyframes.insert(pose.stamp.text);
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    ViewedFrame& frame = frames[i];
-    frame.number = static_cast<std::uint32_t>(i);
+  for (ViewedFrame& frame : frames) {
     frame.keyframe = keyframes.contains(frame.stamp.text);
     const auto pose = poses.find(frame.stamp.text);
     if (pose != poses.end()) add_pose(frame, pose->second, run.camera);
   }
   return frames;
+}
+
+std::size_t logged_drops(std::string_view report_json) {
+  const nlohmann::json report = nlohmann::json::parse(report_json, nullptr, false);
+  const nlohmann::json::json_pointer dropped("/live/dropped");
+  if (!report.is_object() || !report.contains(dropped)) return 0;
+  const nlohmann::json& count = report[dropped];
+  return count.is_number_unsigned() ? count.get<std::size_t>() : 0;
 }
 
 }  // namespace stillmap

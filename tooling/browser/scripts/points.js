@@ -4,14 +4,30 @@
 
 const NEAR_M = 3;
 const LEAST_SHARE = 0.08;
-const POINT_M = 0.03;
+const USUAL_SPACING_M = 0.016; // of the sketch of a map that grows
+const SIZE = 2.2;              // of a point, in spacings
+
+// Round points, neither too small to be seen nor so large that they hide others.
+function pointMaterial(plane) {
+  const material = new THREE.PointsMaterial({ vertexColors: THREE.VertexColors, clippingPlanes: [plane] });
+  material.onBeforeCompile = (shader) => {
+    shader.vertexShader = shader.vertexShader.replace("#include <logdepthbuf_vertex>", `
+      gl_PointSize = clamp(gl_PointSize, 1.5, 48.0);
+      #include <logdepthbuf_vertex>`);
+    shader.fragmentShader = shader.fragmentShader.replace("#include <clipping_planes_fragment>", `
+      #include <clipping_planes_fragment>
+      vec2 fromMiddle = gl_PointCoord - 0.5;
+      if (dot(fromMiddle, fromMiddle) > 0.25) discard;`);
+  };
+  return material;
+}
 
 class Chunk {
-  constructor(cell, side) {
+  constructor(cell, side, plane) {
     this.size = 0;
     this.room = 0;
     this.side = side;
-    this.material = new THREE.PointsMaterial({ size: POINT_M, vertexColors: THREE.VertexColors });
+    this.material = pointMaterial(plane);
     this.object = new THREE.Points(new THREE.BufferGeometry(), this.material);
     this.object.position.set(cell[0] * side, cell[1] * side, cell[2] * side);
     this.object.scale.setScalar(side * 65535 / 65536);  // 65535 is 1
@@ -51,15 +67,25 @@ class Chunk {
     this.object.geometry.attributes.color.needsUpdate = true;
   }
 
-  draw(count) {
+  sample(count) {
+    const corner = this.object.position, step = this.side / 65536;
+    return Array.from({ length: count }, (_, i) => [
+      corner.x + step * this.positions[3 * i], corner.y + step * this.positions[3 * i + 1],
+      corner.z + step * this.positions[3 * i + 2]]);
+  }
+
+  draw(count, size_m) {
     this.object.geometry.setDrawRange(0, count);
-    this.material.size = POINT_M * Math.min(3, Math.sqrt(this.size / Math.max(1, count)));
+    this.material.size = size_m * Math.min(3, Math.sqrt(this.size / Math.max(1, count)));
   }
 }
 
 export class MapPoints {
   constructor(group) {
     this.group = group;
+    this.ceiling = new THREE.Plane(new THREE.Vector3(0, -1, 0), 1e6);
+    this.scale = 1;  // of the points, as the reader of the page likes them
+    this.setSpacing();
     this.clear();
   }
 
@@ -74,11 +100,17 @@ export class MapPoints {
     this.size = 0;
   }
 
+  // The typical distance of neighbouring points.
+  setSpacing(spacing_m = USUAL_SPACING_M) { this.spacing_m = spacing_m; }
+
+  // Nothing above that height of the scene is drawn; null: everything is.
+  cutAt(height) { this.ceiling.constant = height === null ? 1e6 : height; }
+
   // `parts` as the message has them: [place, x, y, z, count, offset of positions, of colours].
   add(parts, body, side) {
     for (const [place, x, y, z, count, positionsAt, colorsAt] of parts) {
       if (!this.chunks[place]) {
-        this.chunks[place] = new Chunk([x, y, z], side);
+        this.chunks[place] = new Chunk([x, y, z], side, this.ceiling);
         this.group.add(this.chunks[place].object);
       }
       this.chunks[place].add(new Uint16Array(body, positionsAt, 3 * count),
@@ -87,11 +119,19 @@ export class MapPoints {
     }
   }
 
+  // About `count` points of all, in world coordinates.
+  sample(count) {
+    const share = Math.min(1, count / Math.max(1, this.size));
+    return this.chunks.flatMap((chunk) => chunk.sample(Math.floor(chunk.size * share)));
+  }
+
   // Chooses about `most` points for a camera at that place (world coordinates): all, if they are no
   // more, else fewer of what is far.
   choose(eye, most) {
+    // three.js takes a size for a field of view of 90 degrees.
+    const size_m = 2 * SIZE * this.scale * this.spacing_m;
     if (this.size <= most) {
-      for (const chunk of this.chunks) chunk.draw(chunk.size);
+      for (const chunk of this.chunks) chunk.draw(chunk.size, size_m);
       return;
     }
     const wanted = this.chunks.map((chunk) => {
@@ -100,6 +140,6 @@ export class MapPoints {
     });
     const sum = wanted.reduce((a, b) => a + b, 0);
     const share = Math.min(1, most / Math.max(1, sum));
-    this.chunks.forEach((chunk, i) => chunk.draw(Math.ceil(wanted[i] * share)));
+    this.chunks.forEach((chunk, i) => chunk.draw(Math.ceil(wanted[i] * share), size_m));
   }
 }

@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: Apache-2.0
+# cmake -DOUTPUT=all.js "-DINPUTS=a.js;b.js" -P bundle_scripts.cmake
+# Joins JavaScript modules into one script, which a page has inside itself: modules of their own files cannot be imported
+# from a page that is opened from the disk. Of a module's language this reads what ours use: `import { A, B } from
+# "./a.js";`, and `export` before function, class and const. Each module comes after those that it imports.
+cmake_minimum_required(VERSION 3.20)
+set(code "// SPDX-License-Identifier: Apache-2.0\n// Made by bundle_scripts.cmake.\n(() => {\n\"use strict\";\nconst modules = {};\n")
+set(bundled "")
+foreach(input IN LISTS INPUTS)
+  get_filename_component(name "${input}" NAME)
+  file(READ "${input}" text)
+  string(REGEX REPLACE "(^|\n) *//[^\n]*" "\\1" text "${text}")
+  string(REGEX MATCHALL "import {[^}]*} from \"\\./[A-Za-z_0-9]+\\.js\"" imports "${text}")
+  foreach(import IN LISTS imports)
+    string(REGEX REPLACE ".*\"\\./(.*)\"" "\\1" imported "${import}")
+    if(NOT imported IN_LIST bundled)
+      message(FATAL_ERROR "${name} imports ${imported}, which does not come before it")
+    endif()
+  endforeach()
+  string(REGEX REPLACE "import ({[^}]*}) from \"\\./([A-Za-z_0-9]+\\.js)\"" "const \\1 = modules[\"\\2\"]" text "${text}")
+  string(REGEX MATCHALL "\nexport [a-z]+ [A-Za-z_0-9]+" exports "${text}")
+  string(REGEX REPLACE "\nexport [a-z]+ " "" exports "${exports}")
+  string(REPLACE ";" ", " exports "${exports}")
+  string(REPLACE "\nexport " "\n" text "${text}")
+  if(text MATCHES "\n(import|export) ")
+    message(FATAL_ERROR "${name} imports or exports in a way that bundle_scripts.cmake does not read")
+  endif()
+  string(APPEND code "modules[\"${name}\"] = (() => {\n${text}return { ${exports} };\n})();\n")
+  list(APPEND bundled "${name}")
+endforeach()
+string(APPEND code "})();\n")
+file(WRITE "${OUTPUT}" "${code}")
