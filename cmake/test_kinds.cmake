@@ -5,7 +5,7 @@
 set(stillmap_slow_tests_config yaml_loader=2)
 set(stillmap_slow_tests_dense surface_fusion=2 vacated_places=5)
 set(stillmap_slow_tests_detections detections_io=2)
-set(stillmap_slow_tests_devices openni_device=2)
+set(stillmap_slow_tests_devices openni_device=2 rosbridge_device=10)
 set(stillmap_slow_tests_eval stitched_map=10)
 set(stillmap_slow_tests_export occupancy_grid=3)
 set(stillmap_slow_tests_faults faults=27 surroundings=12)

@@ -16,6 +16,9 @@ struct DeviceImages {
   double depth_stamp_s = 0;  ///< of the depth image, by the same clock
   ColorImage color;          ///< red, green, blue
   DepthImage depth;          ///< metres along the optical axis; 0 where it is missing
+  /// What is wrong with an image that came, in one line; empty where nothing is. The images then
+  /// mean nothing.
+  std::string damage = {};
 };
 
 /// The driver of a depth camera. DeviceStream makes a stream of frames of it. Called by one thread
