@@ -14,11 +14,11 @@ set(stillmap_slow_tests_mapping local_mapper=7)
 set(stillmap_slow_tests_motion dynamic_objects=7 motion_estimator=5)
 set(stillmap_slow_tests_objects object_tracker=5)
 set(stillmap_slow_tests_program
-  camera=10 evaluate_trajectory=2 export=10 export_session=4 interruption=9 map_commands=13 modes=25 objects=11
+  camera=10 evaluate_trajectory=2 export=10 export_session=4 interruption=20 map_commands=13 modes=25 objects=11
   real_data=28 run=30 save_recording=4 segment=2 show_run=3 stereo_run=20)
 set(stillmap_slow_tests_relocation relocation=32)
 set(stillmap_slow_tests_report report_html=2)
-set(stillmap_slow_tests_runs device_run=4 live_run=7 pipeline=8)
+set(stillmap_slow_tests_runs device_run=4 driver_run=5 live_run=7 pipeline=8)
 set(stillmap_slow_tests_scene choreography=9 office=4)
 set(stillmap_slow_tests_segmentation segmenter=3)
 set(stillmap_slow_tests_session session_damage=3)

@@ -162,17 +162,14 @@ std::optional<DeviceImages> RosbridgeDevice::wait(double timeout_s) {
   const StreamTime until =
       StreamTime::clock::now() +
       std::chrono::duration_cast<StreamTime::duration>(std::chrono::duration<double>(timeout_s));
-  bool ready = connected(until) && read_one(until);
-  while (ready || !damage_.empty()) {
+  do {
+    bool ready = connected(until) && read_one(until);
     // What has arrived already is older than what is to come.
     for (int i = 0; i < kMostWaiting && ready; ++i) ready = read_one({});
     std::optional<DeviceImages> images = take_damage();
     if (!images) images = take_pair();
     if (images) return images;
-    const bool in_time = StreamTime::clock::now() < until;
-    ready = in_time && read_one(until);
-  }
-  (void)connected(until);  // a connection that fails at once is not asked all the time
+  } while (StreamTime::clock::now() < until);
   return std::nullopt;
 }
 

@@ -17,6 +17,7 @@
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/websocket/stream.hpp>
+#include <fcntl.h>
 
 namespace stillmap {
 namespace {
@@ -131,6 +132,7 @@ class FakeRosbridge::Serving {
 
   void listen(const tcp::endpoint& place) {
     acceptor_.emplace(context_, place);
+    ::fcntl(acceptor_->native_handle(), F_SETFD, FD_CLOEXEC);  // tests start programs
     place_ = acceptor_->local_endpoint();
     accept();
   }
