@@ -18,7 +18,7 @@ set(stillmap_slow_tests_program
   real_data=28 run=30 save_recording=4 segment=2 show_run=3 stereo_run=20)
 set(stillmap_slow_tests_relocation relocation=32)
 set(stillmap_slow_tests_report report_html=2)
-set(stillmap_slow_tests_runs device_run=4 driver_run=5 live_run=7 pipeline=8)
+set(stillmap_slow_tests_runs device_run=4 driver_run=5 layout_run=20 live_run=7 pipeline=8)
 set(stillmap_slow_tests_scene choreography=9 office=4)
 set(stillmap_slow_tests_segmentation segmenter=3)
 set(stillmap_slow_tests_session session_damage=3)
