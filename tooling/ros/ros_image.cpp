@@ -50,7 +50,8 @@ cv::Mat pixels_of(const RosImage& image, const Encoding& encoding, const std::st
       image.height_px > kMost) {
     throw DamagedImage("{}: an image of {}x{} pixels", place, image.width_px, image.height_px);
   }
-  const std::size_t row_bytes = image.width_px * std::size_t{CV_ELEM_SIZE(encoding.type)};
+  const std::size_t row_bytes =
+      image.width_px * static_cast<std::size_t>(CV_ELEM_SIZE(encoding.type));
   const std::size_t needed = std::size_t{image.row_bytes} * (image.height_px - 1) + row_bytes;
   if (image.row_bytes < row_bytes || image.pixels.size() < needed) {
     throw DamagedImage("{}: {} bytes, expected {}x{} pixels of {}",
