@@ -129,6 +129,7 @@ void RunInput::open_device_input(const RunArguments& arguments, Clock& clock) {
   source_ = std::make_unique<DeviceStream>(*device_, clock, std::move(options));
   const CameraModel& model = source_->camera();
   line_ = fmt::format("{}, {}x{}", name_, model.width_px, model.height_px);
+  if (!device_->choice().empty()) line_ += "; " + device_->choice();
 }
 
 FrameStream& RunInput::frames() {

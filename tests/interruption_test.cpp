@@ -181,7 +181,10 @@ TEST_F(Interruption, IsTheEndOfARunOnARobot) {
   EXPECT_EQ(WEXITSTATUS(status), 0) << content("stderr.txt");
   EXPECT_THAT(content("stderr.txt"), HasSubstr(robot.url() + " gives no images; waiting for it"));
   EXPECT_THAT(content("stderr.txt"), HasSubstr(robot.url() + " gives images again"));
-  EXPECT_THAT(content("stdout.txt"), HasSubstr("input       stream:" + robot.url() + ", 320x240"));
+  EXPECT_THAT(content("stdout.txt"),
+              HasSubstr("input       stream:" + robot.url() +
+                        ", 320x240; colour /camera/color/image_raw, depth "
+                        "/camera/aligned_depth_to_color/image_raw\n"));
   const std::string record = content("out/live.jsonl");
   EXPECT_GT(std::ranges::count(record, '\n'), 10);
   ASSERT_EQ(run("run kept --out again --live --replay out/live.jsonl").exit_code, 0);

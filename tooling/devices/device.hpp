@@ -44,6 +44,9 @@ class Device {
   /// What is wrong with it from the beginning, a line each.
   [[nodiscard]] virtual std::vector<std::string> warnings() const { return {}; }
 
+  /// What was chosen of what it has, such as its topics; empty where there was nothing to choose.
+  [[nodiscard]] virtual std::string choice() const { return {}; }
+
   /// Whether there will be no more images, as at the end of a file that stands for a device.
   [[nodiscard]] virtual bool ended() const { return false; }
 };

@@ -44,6 +44,9 @@ class RosbridgeDevice : public Device {
   [[nodiscard]] std::optional<CameraModel> camera() const override { return topics_.camera; }
   [[nodiscard]] std::optional<DeviceImages> wait(double timeout_s) override;
   [[nodiscard]] std::vector<std::string> warnings() const override { return topics_.warnings; }
+  [[nodiscard]] std::string choice() const override {
+    return fmt::format("colour {}, depth {}", topics_.color, topics_.depth);
+  }
 
  private:
   void connect_first();

@@ -80,6 +80,7 @@ class V4l2Device : public Device {
   [[nodiscard]] std::optional<CameraModel> camera() const override { return std::nullopt; }
   [[nodiscard]] std::optional<DeviceImages> wait(double timeout_s) override;
   [[nodiscard]] std::vector<std::string> warnings() const override { return warnings_; }
+  [[nodiscard]] std::string choice() const override { return choice_; }
 
  private:
   void open();
@@ -100,6 +101,7 @@ class V4l2Device : public Device {
   ImagePairs<RawVideo, RawVideo> pairs_;
   double same_time_s_ = 0;  // greatest difference between the stamps of images of one moment
   std::vector<std::string> warnings_;
+  std::string choice_;
 };
 
 void V4l2Device::open() {
@@ -111,6 +113,8 @@ void V4l2Device::open() {
   if (!modes) refuse_modes();
   color_->start(modes->first);
   depth_->start(modes->second);
+  choice_ = fmt::format(
+      "colour {}, depth {}", listed_modes({modes->first}), listed_modes({modes->second}));
   const double rate_hz = std::min(modes->first.rate_hz, modes->second.rate_hz);
   same_time_s_ = 0.6 / (rate_hz > 0 ? rate_hz : 30);
 }

@@ -107,6 +107,7 @@ TEST_F(V4l2, GivesTheBitsOfPairs) {
   EXPECT_EQ(device->name(), "v4l2:c,d");
   EXPECT_FALSE(device->camera());
   EXPECT_THAT(device->warnings(), ElementsAre(HasSubstr("does not register its depth")));
+  EXPECT_EQ(device->choice(), "colour RGB3 8x6, depth Z16 8x6");
   const std::optional<DeviceImages> images = device->wait(1);
   ASSERT_TRUE(images);
   EXPECT_EQ(images->damage, "");
