@@ -29,6 +29,12 @@ void check_arguments(const RunArguments& arguments) {
     throw Error("name a SEQUENCE, or a camera with --device{}",
                 arguments.device.empty() ? "" : "; not both");
   }
+  const bool names_topics =
+      !arguments.sequence.color_topic.empty() || !arguments.sequence.depth_topic.empty();
+  if (names_topics && !arguments.device.empty() && !arguments.device.starts_with("stream:")) {
+    throw Error("--device {}: has no topics; --color-topic and --depth-topic are for stream:URL",
+                arguments.device);
+  }
   if (arguments.save_recording.empty()) return;
   if (!arguments.live && arguments.device.empty()) {
     throw Error("--save-recording keeps the frames of a live run: add --live, or name a --device");
@@ -105,13 +111,16 @@ void RunInput::open_sequence_input(const RunArguments& arguments) {
 }
 
 void RunInput::open_device_input(const RunArguments& arguments, Clock& clock) {
-  DeviceStreamOptions options;
+  DeviceRequest request;
+  request.color_topic = arguments.sequence.color_topic;
+  request.depth_topic = arguments.sequence.depth_topic;
   const std::string& camera = arguments.sequence.camera;
-  if (!camera.empty()) options.camera = camera_by_name(camera);
-  const bool registered = !options.camera || !options.camera->depth_camera;
+  if (!camera.empty()) request.camera = camera_by_name(camera);
   device_ = option_value("--device", arguments.device, [&](const std::string& text) {
-    return open_device(text, registered);
+    return open_device(text, request);
   });
+  DeviceStreamOptions options;
+  options.camera = request.camera;
   warnings_ = device_->warnings();
   options.begin_s = time_of_day_s();
   options.stopped = interruption_noted;
@@ -120,6 +129,7 @@ void RunInput::open_device_input(const RunArguments& arguments, Clock& clock) {
   source_ = std::make_unique<DeviceStream>(*device_, clock, std::move(options));
   const CameraModel& model = source_->camera();
   line_ = fmt::format("{}, {}x{}", name_, model.width_px, model.height_px);
+  if (!device_->choice().empty()) line_ += "; " + device_->choice();
 }
 
 FrameStream& RunInput::frames() {

@@ -34,8 +34,8 @@ CLI::Option* add_sequence_options(CLI::App& command, SequenceArguments& argument
           arguments.stamps,
           fmt::format("unit of the stamps, where it is not recognised: {}", joined(units, ", ")))
       ->check(CLI::IsMember(units));
-  command.add_option("--color-topic", arguments.color_topic, "of a bag with several");
-  command.add_option("--depth-topic", arguments.depth_topic, "of a bag with several");
+  command.add_option("--color-topic", arguments.color_topic, "of a bag or a robot with several");
+  command.add_option("--depth-topic", arguments.depth_topic, "of a bag or a robot with several");
   return sequence;
 }
 

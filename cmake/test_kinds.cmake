@@ -5,7 +5,7 @@
 set(stillmap_slow_tests_config yaml_loader=2)
 set(stillmap_slow_tests_dense surface_fusion=2 vacated_places=5)
 set(stillmap_slow_tests_detections detections_io=2)
-set(stillmap_slow_tests_devices openni_device=2)
+set(stillmap_slow_tests_devices openni_device=2 rosbridge_device=10)
 set(stillmap_slow_tests_eval stitched_map=10)
 set(stillmap_slow_tests_export occupancy_grid=3)
 set(stillmap_slow_tests_faults faults=27 surroundings=12)
@@ -14,11 +14,11 @@ set(stillmap_slow_tests_mapping local_mapper=7)
 set(stillmap_slow_tests_motion dynamic_objects=7 motion_estimator=5)
 set(stillmap_slow_tests_objects object_tracker=5)
 set(stillmap_slow_tests_program
-  camera=10 evaluate_trajectory=2 export=10 export_session=4 interruption=9 map_commands=13 modes=25 objects=11
+  camera=10 evaluate_trajectory=2 export=10 export_session=4 interruption=20 map_commands=13 modes=25 objects=11
   real_data=28 run=30 save_recording=4 segment=2 show_run=3 stereo_run=20)
 set(stillmap_slow_tests_relocation relocation=32)
 set(stillmap_slow_tests_report report_html=2)
-set(stillmap_slow_tests_runs device_run=4 live_run=7 pipeline=8)
+set(stillmap_slow_tests_runs device_run=4 driver_run=5 layout_run=20 live_run=7 pipeline=8)
 set(stillmap_slow_tests_scene choreography=9 office=4)
 set(stillmap_slow_tests_segmentation segmenter=3)
 set(stillmap_slow_tests_session session_damage=3)

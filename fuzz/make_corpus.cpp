@@ -14,6 +14,7 @@
 #include "stillmap/io/image_io.hpp"
 #include "stillmap/io/ply.hpp"
 #include "stillmap/sensor/camera_io.hpp"
+#include "tests/support/bridge_messages.hpp"
 #include "tests/support/sample_config.hpp"
 
 namespace stillmap {
@@ -172,6 +173,25 @@ void write_ros_messages(const fs::path& folder) {
          std::string("\0\0\x80\x3f", 4)});
 }
 
+// The first byte says how the others are read: '0' as JSON, '1' as CBOR
+// (fuzz/rosbridge_fuzzer.cpp).
+void write_rosbridge_messages(const fs::path& folder) {
+  const cv::Mat3b color(3, 4, cv::Vec3b(1, 2, 3));
+  const cv::Mat1w depth(3, 4, std::uint16_t{1500});
+  std::vector<std::string> all;
+  for (const BridgeCoding coding : {BridgeCoding::kJson, BridgeCoding::kCbor}) {
+    for (const nlohmann::json& content : {image_value(color, "rgb8", 5, coding),
+                                          image_value(depth, "16UC1", 5, coding),
+                                          info_value(builtin_camera("tum_fr1"))}) {
+      all.push_back((coding == BridgeCoding::kCbor ? "1" : "0") +
+                    encoded(published("/camera", content), coding));
+    }
+  }
+  all.emplace_back(
+      R"(0{"op":"service_response","id":"t","result":true,"values":{"topics":["/a"],"types":["sensor_msgs/Image"]}})");
+  write(folder, "rosbridge", all);
+}
+
 }  // namespace
 
 void write_corpus(const fs::path& folder) {
@@ -179,6 +199,7 @@ void write_corpus(const fs::path& folder) {
   write_texts(folder);
   write_layouts(folder);
   write_ros_messages(folder);
+  write_rosbridge_messages(folder);
   write(folder,
         "ply",
         {encode_ply(some_points()), encode_ply(some_points(), PlyFormat::kAscii), encode_ply({})});

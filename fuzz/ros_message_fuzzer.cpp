@@ -2,9 +2,9 @@
 // Any bytes are parsed as each of the messages of a bag of ROS 1, or refused; images of them are
 // decoded, or refused, and cameras are made of CameraInfo. Bags themselves are read by librosbag.
 #include "fuzz/harness.hpp"
-#include "tooling/recordings/camera_info.hpp"
-#include "tooling/recordings/ros_image.hpp"
-#include "tooling/recordings/ros_message.hpp"
+#include "tooling/ros/camera_info.hpp"
+#include "tooling/ros/ros_image.hpp"
+#include "tooling/ros/ros_message.hpp"
 
 namespace stillmap::fuzz {
 namespace {

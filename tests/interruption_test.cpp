@@ -23,6 +23,10 @@
 #include "tests/support/plane_sequence.hpp"
 #include "tooling/devices/openni_device.hpp"
 
+#if STILLMAP_WITH_FAKE_ROSBRIDGE
+#include "tests/support/rosbridge/fake_rosbridge.hpp"
+#endif
+
 namespace stillmap {
 namespace {
 
@@ -151,6 +155,45 @@ TEST_F(Interruption, IsTheEndOfARunOnADevice) {
   ASSERT_EQ(run("run kept --out again --live --replay out/live.jsonl").exit_code, 3);
   EXPECT_EQ(content("again/live.jsonl"), record);
 }
+
+#if STILLMAP_WITH_FAKE_ROSBRIDGE
+
+// The program on a robot, whose connection is lost in the middle. The robot sends a frame every 20
+// ms of this test's time: the program may drop some.
+TEST_F(Interruption, IsTheEndOfARunOnARobot) {
+  const Sequence wall = Sequence::open(folder_ / "wall");
+  FakeRosbridge robot(BridgeCoding::kCbor);
+  robot.add_camera(wall);
+  start({"run", "--device", "stream:" + robot.url(), "--out", "out", "--save-recording", "kept"});
+  for (std::uint32_t i = 0; i < wall.size(); ++i) {
+    if (i == wall.size() / 2) {
+      robot.go_down();
+      std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+      robot.come_up();
+    }
+    robot.publish_frame(wall, i);
+    std::this_thread::sleep_for(std::chrono::milliseconds(i % 20 == 0 ? 1500 : 20));
+  }
+  std::this_thread::sleep_for(std::chrono::seconds(1));
+  interrupt(SIGINT);
+  const int status = wait_for_end();
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0) << content("stderr.txt");
+  EXPECT_THAT(content("stderr.txt"), HasSubstr(robot.url() + " gives no images; waiting for it"));
+  EXPECT_THAT(content("stderr.txt"), HasSubstr(robot.url() + " gives images again"));
+  EXPECT_THAT(content("stdout.txt"),
+              HasSubstr("input       stream:" + robot.url() +
+                        ", 320x240; colour /camera/color/image_raw, depth "
+                        "/camera/aligned_depth_to_color/image_raw\n"));
+  const std::string record = content("out/live.jsonl");
+  EXPECT_GT(std::ranges::count(record, '\n'), 10);
+  ASSERT_EQ(run("run kept --out again --live --replay out/live.jsonl").exit_code, 0);
+  for (const char* file : {"trajectory.txt", "keyframes.txt", "map.ply", "live.jsonl"}) {
+    EXPECT_EQ(content(std::string("out/") + file), content(std::string("again/") + file)) << file;
+  }
+}
+
+#endif
 
 TEST_F(Interruption, ASecondSignalEndsTheProgramAtOnce) {
   start(kSlowRun);

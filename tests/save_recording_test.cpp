@@ -44,6 +44,12 @@ TEST_F(SaveRecording, DevicesAreNamedOrRefused) {
   expect_refused("run wall --out out --device openni2:0", "SEQUENCE excludes --device");
   expect_refused("run --out out --device webcam", "--device webcam: unknown device");
   expect_refused("run --out out --device openni2:0 --frames 1:5", "--device excludes --frames");
+  expect_refused("run --out out --device openni2:0 --color-topic /rgb",
+                 "--device openni2:0: has no topics");
+  expect_refused("run --out out --device v4l2:/dev/none,/dev/none",
+                 "--device v4l2:/dev/none,/dev/none: /dev/none cannot be opened");
+  expect_refused("run --out out --device stream:rtsp://camera",
+                 "--device stream:rtsp://camera: rtsp is not offered, as video codecs carry no");
   expect_refused("run --out out --device openni2:99",
                  has_openni() ? "--device openni2:99: OpenNI2 finds"
                               : "--device openni2:99: this build has no OpenNI2; install");

@@ -257,7 +257,8 @@ void add_inputs(CLI::App& command, RunArguments& arguments) {
           "--device",
           arguments.device,
           "a depth camera in place of SEQUENCE: openni2:0, the first that OpenNI2 finds, or "
-          "openni2:URI; the run is live and goes on until Ctrl-C")
+          "openni2:URI; v4l2:COLOR,DEPTH, two video nodes; stream:ws://HOST:PORT, a robot's "
+          "rosbridge; the run is live and goes on until Ctrl-C")
       ->excludes(sequence);
   command.add_option("--save-recording",
                      arguments.save_recording,
@@ -353,8 +354,6 @@ void add_run_command(CLI::App& app, CommandResult& result) {
   for (const char* of_recordings : {"--format",
                                     "--rate",
                                     "--stamps",
-                                    "--color-topic",
-                                    "--depth-topic",
                                     "--depth-factor",
                                     "--frames",
                                     "--stride",
@@ -373,6 +372,8 @@ void add_run_command(CLI::App& app, CommandResult& result) {
       "  stillmap run office --out live --live\n"
       "  stillmap run office --out again --live --replay live/live.jsonl\n"
       "  stillmap run --device openni2:0 --out live --save-recording kept\n"
+      "  stillmap run --device v4l2:/dev/video4,/dev/video2 --camera d435.yaml --out live\n"
+      "  stillmap run --device stream:ws://robot:9090 --out live\n"
       "Exit code 3 says that tracking was lost for good, 4 that Ctrl-C or SIGTERM ended the run: "
       "the\nresults are whole, but end before the sequence does. A second Ctrl-C ends at once.\n"
       "Of a run on a device Ctrl-C is the usual end.");

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "stillmap/core/error.hpp"
 #include "stillmap/sensor/clock.hpp"
 #include "tooling/devices/device.hpp"
 

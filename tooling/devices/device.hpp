@@ -16,6 +16,9 @@ struct DeviceImages {
   double depth_stamp_s = 0;  ///< of the depth image, by the same clock
   ColorImage color;          ///< red, green, blue
   DepthImage depth;          ///< metres along the optical axis; 0 where it is missing
+  /// What is wrong with an image that came, in one line; empty where nothing is. The images then
+  /// mean nothing.
+  std::string damage = {};
 };
 
 /// The driver of a depth camera. DeviceStream makes a stream of frames of it. Called by one thread
@@ -40,6 +43,9 @@ class Device {
 
   /// What is wrong with it from the beginning, a line each.
   [[nodiscard]] virtual std::vector<std::string> warnings() const { return {}; }
+
+  /// What was chosen of what it has, such as its topics; empty where there was nothing to choose.
+  [[nodiscard]] virtual std::string choice() const { return {}; }
 
   /// Whether there will be no more images, as at the end of a file that stands for a device.
   [[nodiscard]] virtual bool ended() const { return false; }

@@ -90,7 +90,8 @@ StreamedFrame DeviceStream::make_streamed(DeviceImages images, double stamp_s) {
   const FrameId id(next_id_++);
   const Stamp stamp = stamp_of_seconds(stamp_s);
   const CameraModel& depth_camera = registration_ ? camera_.depth_camera->camera : camera_;
-  std::string problem = size_problem(images.color.mat, camera_, "colour");
+  std::string problem = images.damage;
+  if (problem.empty()) problem = size_problem(images.color.mat, camera_, "colour");
   if (problem.empty()) problem = size_problem(images.depth.mat, depth_camera, "depth");
   if (!problem.empty()) return DamagedFrame{id, stamp, device_.name() + ": " + problem};
   if (registration_) images.depth = registration_->to_color(images.depth);

@@ -26,8 +26,9 @@ struct DeviceStreamOptions {
 };
 
 /// The frames of a device. Images that stay out for kToldAfterS are told and waited for. Images of
-/// the wrong size are damaged frames. Stamps are those of the device while its clock agrees with
-/// ours within kClockSlackS; after a device begins anew, its stamps are tied to our clock again.
+/// the wrong size, or that the device calls damaged, are damaged frames. Stamps are those of the
+/// device while its clock agrees with ours within kClockSlackS; after a device begins anew, its
+/// stamps are tied to our clock again.
 class DeviceStream : public FrameStream {
  public:
   /// Device and clock outlive the object. Throws Error where the camera is not known.

@@ -5,15 +5,29 @@
 
 #include "stillmap/core/error.hpp"
 #include "tooling/devices/openni_device.hpp"
+#include "tooling/devices/rosbridge_device.hpp"
+#include "tooling/devices/v4l2_device.hpp"
 
 namespace stillmap {
+namespace {
 
-std::unique_ptr<Device> open_device(const std::string& text, bool registered) {
-  constexpr std::string_view kOpenNi = "openni2:";
-  if (text.starts_with(kOpenNi)) {
-    return open_openni_device(text.substr(kOpenNi.size()), text, registered);
+// What follows the kind of a device in its text; nothing for another kind.
+std::optional<std::string> after(const std::string& text, std::string_view kind) {
+  if (!text.starts_with(kind)) return std::nullopt;
+  return text.substr(kind.size());
+}
+
+}  // namespace
+
+std::unique_ptr<Device> open_device(const std::string& text, const DeviceRequest& request) {
+  if (const auto which = after(text, "openni2:")) {
+    return open_openni_device(*which, text, request.registered());
   }
-  throw Error("{}: unknown device, expected openni2:NUMBER or openni2:URI", text);
+  if (const auto which = after(text, "v4l2:")) return open_v4l2_device(*which, text, request);
+  if (const auto url = after(text, "stream:")) return open_rosbridge_device(*url, text, request);
+  throw Error(
+      "{}: unknown device, expected openni2:NUMBER, v4l2:COLOR,DEPTH or stream:ws://HOST:PORT",
+      text);
 }
 
 }  // namespace stillmap

@@ -5,13 +5,14 @@
 #include <string>
 
 #include "tooling/devices/device.hpp"
+#include "tooling/devices/device_request.hpp"
 
 namespace stillmap {
 
-/// Opens the device that a text names: "openni2:0", the first camera that OpenNI2 finds, or
-/// "openni2:URI". `registered`: the device is to register its depth images to the colour images, as
-/// the camera has no depth camera of its own. Throws Error, beginning with the text, for another
-/// text, and as open_openni_device() does.
-[[nodiscard]] std::unique_ptr<Device> open_device(const std::string& text, bool registered);
+/// Opens the device that a text names: "openni2:0" or "openni2:URI" (openni_device.hpp),
+/// "v4l2:COLOR,DEPTH" (v4l2_device.hpp), "stream:ws://HOST:PORT" (rosbridge_device.hpp). Throws
+/// Error, beginning with the text, for another text, and as opening these does.
+[[nodiscard]] std::unique_ptr<Device> open_device(const std::string& text,
+                                                  const DeviceRequest& request);
 
 }  // namespace stillmap

@@ -13,13 +13,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <deque>
 #include <utility>
 #include <vector>
 
 #include <OpenNI.h>
-#include <fmt/core.h>
 
+#include "tooling/devices/device_request.hpp"
+#include "tooling/devices/image_pairs.hpp"
 #include "tooling/devices/openni_plug.hpp"
 
 namespace stillmap {
@@ -153,8 +153,6 @@ class OpenNiDevice : public Device {
   [[nodiscard]] bool open_again(SteadyTime until);
   /// Reads one image of either kind; returns whether there was one.
   [[nodiscard]] bool read_one(SteadyTime until);
-  /// The newest pair of one moment; it and what is older goes.
-  [[nodiscard]] std::optional<DeviceImages> take_pair();
   [[nodiscard]] DeviceImages images_of(const openni::VideoFrameRef& color,
                                        const openni::VideoFrameRef& depth) const;
 
@@ -164,9 +162,7 @@ class OpenNiDevice : public Device {
   Plug plug_;
   openni::Device device_;
   openni::VideoStream color_stream_, depth_stream_;
-  // Images that have no partner yet, the oldest first. Colour may come some frames after the depth
-  // of its moment.
-  std::deque<openni::VideoFrameRef> color_, depth_;
+  ImagePairs<openni::VideoFrameRef, openni::VideoFrameRef> pairs_;
   std::optional<CameraModel> camera_;
   double depth_factor_ = 1000;
   double same_time_s_ = 0;  // greatest difference between the stamps of images of one moment
@@ -219,10 +215,7 @@ void OpenNiDevice::register_depth() {
                     device_.setImageRegistrationMode(mode) == openni::STATUS_OK;
   warnings_.clear();
   if (done || !registered_) return;
-  warnings_.push_back(
-      fmt::format("{} does not register its depth to colour; name a camera with a depth camera of "
-                  "its own (--camera), or the map will be smeared",
-                  name_));
+  warnings_.push_back(not_registered(name_));
 }
 
 void OpenNiDevice::read_camera(const openni::VideoMode& mode) {
@@ -243,8 +236,7 @@ void OpenNiDevice::read_camera(const openni::VideoMode& mode) {
 }
 
 void OpenNiDevice::close() {
-  color_.clear();
-  depth_.clear();
+  pairs_.clear();
   color_stream_.stop();
   depth_stream_.stop();
   // Threads of some drivers, such as that of "Dummy", use a stream for some time after stop().
@@ -279,10 +271,11 @@ bool OpenNiDevice::read_one(SteadyTime until) {
   openni::VideoFrameRef frame;
   if (streams[static_cast<std::size_t>(ready)]->readFrame(&frame) != openni::STATUS_OK)
     return false;
-  constexpr std::size_t kMostWaiting = 4;
-  std::deque<openni::VideoFrameRef>& waiting = ready == 0 ? color_ : depth_;
-  waiting.push_back(frame);
-  if (waiting.size() > kMostWaiting) waiting.pop_front();
+  if (ready == 0) {
+    pairs_.add_color(seconds_of(frame), frame);
+  } else {
+    pairs_.add_depth(seconds_of(frame), frame);
+  }
   return true;
 }
 
@@ -302,27 +295,14 @@ DeviceImages OpenNiDevice::images_of(const openni::VideoFrameRef& color,
   return images;
 }
 
-std::optional<DeviceImages> OpenNiDevice::take_pair() {
-  for (std::size_t i = color_.size(); i-- > 0;) {
-    for (std::size_t j = depth_.size(); j-- > 0;) {
-      if (std::abs(seconds_of(color_[i]) - seconds_of(depth_[j])) > same_time_s_) continue;
-      DeviceImages images = images_of(color_[i], depth_[j]);
-      color_.erase(color_.begin(), color_.begin() + static_cast<std::ptrdiff_t>(i) + 1);
-      depth_.erase(depth_.begin(), depth_.begin() + static_cast<std::ptrdiff_t>(j) + 1);
-      return images;
-    }
-  }
-  return std::nullopt;
-}
-
 std::optional<DeviceImages> OpenNiDevice::wait(double timeout_s) {
   const auto timeout = std::chrono::duration<double>(timeout_s);
   const SteadyTime until =
       SteadyTime::clock::now() + std::chrono::duration_cast<SteadyTime::duration>(timeout);
   const bool open = (opened_ && plug_.plugged_in()) || open_again(until);
   while (open && read_one(until)) {
-    std::optional<DeviceImages> images = take_pair();
-    if (images) return images;
+    const auto pair = pairs_.take(same_time_s_);
+    if (pair) return images_of(pair->first.image, pair->second.image);
   }
   plug_.wait_for_change(until);  // a device that fails at once is not asked all the time
   return std::nullopt;

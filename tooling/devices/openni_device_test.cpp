@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "stillmap/geometry/depth_camera.hpp"
 #include "tests/support/files.hpp"
 #include "tooling/devices/open_device.hpp"
 
@@ -15,9 +16,15 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
+CameraModel elsewhere() {
+  CameraModel camera;
+  camera.depth_camera = std::make_shared<const DepthCamera>();
+  return camera;
+}
+
 TEST(OpenNiDevice, GivesPairsOfNewImages) {
   if (!has_openni()) GTEST_SKIP() << "built without libopenni2-dev";
-  const std::unique_ptr<Device> device = open_device("openni2:Dummy", true);
+  const std::unique_ptr<Device> device = open_device("openni2:Dummy", {});
   EXPECT_EQ(device->name(), "openni2:Dummy");
   EXPECT_FALSE(device->camera());  // it tells no field of view
   EXPECT_THAT(device->warnings(), ElementsAre(HasSubstr("does not register its depth")));
@@ -36,23 +43,24 @@ TEST(OpenNiDevice, GivesPairsOfNewImages) {
 // Depth that the named camera brings into the view of colour is not to be registered twice.
 TEST(OpenNiDevice, NeedNotRegister) {
   if (!has_openni()) GTEST_SKIP() << "built without libopenni2-dev";
-  const std::unique_ptr<Device> device = open_device("openni2:Dummy", false);
+  const std::unique_ptr<Device> device = open_device("openni2:Dummy", {.camera = elsewhere()});
   EXPECT_TRUE(device->warnings().empty());
   EXPECT_TRUE(device->wait(5));  // the driver of "Dummy" crashes when it is closed at once
 }
 
 TEST(OpenNiDevice, SaysWhatIsMissing) {
-  const std::string error = error_of([] { (void)open_device("openni2:99", true); });
+  const std::string error = error_of([] { (void)open_device("openni2:99", {}); });
   EXPECT_THAT(error, HasSubstr("openni2:99: "));
   EXPECT_THAT(error, HasSubstr(has_openni() ? "finds" : "install libopenni2-dev"));
   if (has_openni()) {
-    EXPECT_THAT(error_of([] { (void)open_device("openni2:nothing-like-this", true); }),
+    EXPECT_THAT(error_of([] { (void)open_device("openni2:nothing-like-this", {}); }),
                 HasSubstr("cannot be opened"));
-    EXPECT_THAT(error_of([] { (void)open_device("openni2:", true); }),
+    EXPECT_THAT(error_of([] { (void)open_device("openni2:", {}); }),
                 HasSubstr("expected openni2:"));
   }
-  EXPECT_EQ(error_of([] { (void)open_device("webcam", true); }),
-            "webcam: unknown device, expected openni2:NUMBER or openni2:URI");
+  EXPECT_EQ(error_of([] { (void)open_device("webcam", {}); }),
+            "webcam: unknown device, expected openni2:NUMBER, v4l2:COLOR,DEPTH or "
+            "stream:ws://HOST:PORT");
 }
 
 }  // namespace

@@ -16,9 +16,9 @@
 #include "stillmap/io/input_file.hpp"
 #include "stillmap/sensor/pair_images.hpp"
 #include "tooling/recordings/bag_file.hpp"
-#include "tooling/recordings/camera_info.hpp"
-#include "tooling/recordings/ros_image.hpp"
-#include "tooling/recordings/ros_topics.hpp"
+#include "tooling/ros/camera_info.hpp"
+#include "tooling/ros/ros_image.hpp"
+#include "tooling/ros/ros_topics.hpp"
 
 namespace stillmap {
 namespace {
@@ -189,11 +189,8 @@ void check_sizes(const ImageReader& images, const std::string& color, const std:
 
 // Whether depth has the intrinsics of colour, as it has when it is registered, or none of its own.
 bool same_intrinsics(const BagFile& bag, const CameraModel& color, const std::string& depth) {
-  constexpr double kSamePx = 2;
   const std::optional<RosCameraInfo> info = info_of(bag, depth);
-  if (!info) return true;
-  return std::abs(info->intrinsics[0] - color.fx) < kSamePx &&
-         std::abs(info->intrinsics[2] - color.cx) < kSamePx;
+  return !info || looks_registered(*info, color);
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "stillmap/geometry/camera.hpp"
-#include "tooling/recordings/ros_message.hpp"
+#include "tooling/ros/ros_message.hpp"
 
 namespace stillmap {
 
@@ -14,5 +14,9 @@ namespace stillmap {
 [[nodiscard]] CameraModel camera_of_info(const RosCameraInfo& info,
                                          bool rectified,
                                          const std::string& place);
+
+/// Whether the depth camera's info has the focal length and centre of the colour camera, within 2
+/// px, as it has when depth is registered to colour.
+[[nodiscard]] bool looks_registered(const RosCameraInfo& depth, const CameraModel& color);
 
 }  // namespace stillmap

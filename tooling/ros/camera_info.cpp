@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tooling/recordings/camera_info.hpp"
+#include "tooling/ros/camera_info.hpp"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 #include <string>
 
@@ -51,6 +52,12 @@ CameraModel camera_of_info(const RosCameraInfo& info, bool rectified, const std:
   camera.depth_factor_given = true;
   check_camera(camera, place);
   return camera;
+}
+
+bool looks_registered(const RosCameraInfo& depth, const CameraModel& color) {
+  constexpr double kSamePx = 2;
+  return std::abs(depth.intrinsics[0] - color.fx) < kSamePx &&
+         std::abs(depth.intrinsics[2] - color.cx) < kSamePx;
 }
 
 }  // namespace stillmap

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tooling/recordings/ros_image.hpp"
+#include "tooling/ros/ros_image.hpp"
 
 namespace stillmap {
 

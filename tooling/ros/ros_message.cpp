@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tooling/recordings/ros_message.hpp"
+#include "tooling/ros/ros_message.hpp"
 
 #include <bit>
 #include <cstring>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tooling/recordings/ros_image.hpp"
+#include "tooling/ros/ros_image.hpp"
 
 #include <array>
 #include <cmath>
@@ -50,9 +50,8 @@ cv::Mat pixels_of(const RosImage& image, const Encoding& encoding, const std::st
       image.height_px > kMost) {
     throw DamagedImage("{}: an image of {}x{} pixels", place, image.width_px, image.height_px);
   }
-  cv::Mat pixels(
-      static_cast<int>(image.height_px), static_cast<int>(image.width_px), encoding.type);
-  const std::size_t row_bytes = image.width_px * pixels.elemSize();
+  const std::size_t row_bytes =
+      image.width_px * static_cast<std::size_t>(CV_ELEM_SIZE(encoding.type));
   const std::size_t needed = std::size_t{image.row_bytes} * (image.height_px - 1) + row_bytes;
   if (image.row_bytes < row_bytes || image.pixels.size() < needed) {
     throw DamagedImage("{}: {} bytes, expected {}x{} pixels of {}",
@@ -62,9 +61,11 @@ cv::Mat pixels_of(const RosImage& image, const Encoding& encoding, const std::st
                        image.height_px,
                        encoding.name);
   }
-  if (image.big_endian && pixels.elemSize1() > 1) {
+  if (image.big_endian && CV_ELEM_SIZE1(encoding.type) > 1) {
     throw Error("{}: big-endian pixels, expected little-endian ones", place);
   }
+  cv::Mat pixels(
+      static_cast<int>(image.height_px), static_cast<int>(image.width_px), encoding.type);
   for (int row = 0; row < pixels.rows; ++row) {
     std::memcpy(pixels.ptr(row),
                 image.pixels.data() + static_cast<std::size_t>(row) * image.row_bytes,
@@ -118,12 +119,12 @@ bool is_compressed_depth(std::string_view format) {
 
 }  // namespace
 
-RosImageKind ros_image_kind(std::string_view message, RosImageType type, const std::string& place) {
-  if (type == RosImageType::kPlain) {
-    const Encoding* const encoding = find_encoding(parse_ros_image(message, place).encoding);
-    return encoding != nullptr ? encoding->kind : RosImageKind::kOther;
-  }
-  const RosCompressedImage image = parse_ros_compressed_image(message, place);
+RosImageKind ros_image_kind(const RosImage& image) {
+  const Encoding* const encoding = find_encoding(image.encoding);
+  return encoding != nullptr ? encoding->kind : RosImageKind::kOther;
+}
+
+RosImageKind ros_image_kind(const RosCompressedImage& image) {
   if (is_compressed_depth(image.format)) return RosImageKind::kDepth;
   if (image.format.starts_with("mono8") || image.format.starts_with("8UC1"))
     return RosImageKind::kGray;
@@ -132,11 +133,7 @@ RosImageKind ros_image_kind(std::string_view message, RosImageType type, const s
   return is_jpeg(image.file) || is_png(image.file) ? RosImageKind::kColor : RosImageKind::kOther;
 }
 
-ColorImage decode_ros_color(std::string_view message, RosImageType type, const std::string& place) {
-  if (type == RosImageType::kCompressed) {
-    return decode_color(parse_ros_compressed_image(message, place).file, place);
-  }
-  const RosImage image = parse_ros_image(message, place);
+ColorImage decode_ros_color(const RosImage& image, const std::string& place) {
   const Encoding* const encoding = find_encoding(image.encoding);
   if (encoding == nullptr || encoding->kind == RosImageKind::kDepth) {
     throw Error("{}: encoding '{}', expected rgb8, bgr8 or mono8", place, image.encoding);
@@ -148,19 +145,11 @@ ColorImage decode_ros_color(std::string_view message, RosImageType type, const s
   return ColorImage(rgb);
 }
 
-DepthImage decode_ros_depth(std::string_view message,
-                            RosImageType type,
-                            double depth_factor,
-                            const std::string& place) {
-  if (type == RosImageType::kCompressed) {
-    const RosCompressedImage image = parse_ros_compressed_image(message, place);
-    if (is_compressed_depth(image.format)) {
-      return DepthImage(from_compressed_depth(image.format, image.file, depth_factor, place));
-    }
-    return DepthImage(
-        from_units(cv::Mat1w(decode_png(image.file, PngKind::kGray16, place)), depth_factor));
-  }
-  const RosImage image = parse_ros_image(message, place);
+ColorImage decode_ros_color(const RosCompressedImage& image, const std::string& place) {
+  return decode_color(image.file, place);
+}
+
+DepthImage decode_ros_depth(const RosImage& image, double depth_factor, const std::string& place) {
   const Encoding* const encoding = find_encoding(image.encoding);
   if (encoding == nullptr || encoding->kind != RosImageKind::kDepth) {
     throw Error("{}: encoding '{}', expected 16UC1 or 32FC1", place, image.encoding);
@@ -169,6 +158,36 @@ DepthImage decode_ros_depth(std::string_view message,
   if (encoding->type == CV_16UC1) return DepthImage(from_units(cv::Mat1w(pixels), depth_factor));
   const cv::Mat1f metres(pixels);
   return DepthImage(converted(metres, [&](int row, int column) { return metres(row, column); }));
+}
+
+DepthImage decode_ros_depth(const RosCompressedImage& image,
+                            double depth_factor,
+                            const std::string& place) {
+  if (is_compressed_depth(image.format)) {
+    return DepthImage(from_compressed_depth(image.format, image.file, depth_factor, place));
+  }
+  return DepthImage(
+      from_units(cv::Mat1w(decode_png(image.file, PngKind::kGray16, place)), depth_factor));
+}
+
+RosImageKind ros_image_kind(std::string_view message, RosImageType type, const std::string& place) {
+  return type == RosImageType::kPlain ? ros_image_kind(parse_ros_image(message, place))
+                                      : ros_image_kind(parse_ros_compressed_image(message, place));
+}
+
+ColorImage decode_ros_color(std::string_view message, RosImageType type, const std::string& place) {
+  return type == RosImageType::kPlain
+             ? decode_ros_color(parse_ros_image(message, place), place)
+             : decode_ros_color(parse_ros_compressed_image(message, place), place);
+}
+
+DepthImage decode_ros_depth(std::string_view message,
+                            RosImageType type,
+                            double depth_factor,
+                            const std::string& place) {
+  return type == RosImageType::kPlain
+             ? decode_ros_depth(parse_ros_image(message, place), depth_factor, place)
+             : decode_ros_depth(parse_ros_compressed_image(message, place), depth_factor, place);
 }
 
 }  // namespace stillmap

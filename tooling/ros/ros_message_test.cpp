@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tooling/recordings/ros_message.hpp"
+#include "tooling/ros/ros_message.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,9 +8,9 @@
 #include "stillmap/io/image_io.hpp"
 #include "stillmap/io/png_codec.hpp"
 #include "tests/support/files.hpp"
-#include "tooling/recordings/camera_info.hpp"
-#include "tooling/recordings/ros_image.hpp"
-#include "tooling/recordings/ros_topics.hpp"
+#include "tooling/ros/camera_info.hpp"
+#include "tooling/ros/ros_image.hpp"
+#include "tooling/ros/ros_topics.hpp"
 
 namespace stillmap {
 namespace {

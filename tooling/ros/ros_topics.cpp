@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tooling/recordings/ros_topics.hpp"
+#include "tooling/ros/ros_topics.hpp"
 
 #include <algorithm>
 #include <filesystem>
