@@ -24,7 +24,7 @@ class DifferenceCodes {
 
   void read_table() {
     const std::size_t count = word();
-    if (count * 2 > rest_.size()) fail();
+    if (count == 0 || count * 2 > rest_.size()) fail();
     table_.emplace(count);
     std::memcpy(table_->data(), rest_.data(), count * 2);
     rest_.remove_prefix(count * 2);

@@ -61,6 +61,8 @@ TEST(OniDepth, IsThatWhichWasEncoded) {
               }),
               HasSubstr("codec 'XYZ1', expected NONE, 16zT or 16zP"));
   EXPECT_THROW((void)decode_oni_depth("", "16zT", {2, 2}, "d"), DamagedImage);
+  const std::string no_table(4, '\0');
+  EXPECT_THROW((void)decode_oni_depth(no_table, "16zT", {1, 1}, "d"), DamagedImage);
 }
 
 // An image as the recorder of OpenNI 2.2 stored it: of its device without hardware, "Dummy", which
