@@ -43,8 +43,9 @@ OniList list_of(const OniStream& stream) {
   std::vector<OniImage> sorted = stream.images;
   std::ranges::stable_sort(sorted, {}, &OniImage::stamp_us);
   for (const OniImage& image : sorted) {
-    if (!listed.images.empty() && listed.images.back().stamp_us == image.stamp_us) continue;
+    // In seconds, as absurd stamps differ by less than a number of seconds can tell.
     const double stamp_s = 1e-6 * static_cast<double>(image.stamp_us);
+    if (!listed.images.empty() && listed.list.images.back().stamp.seconds >= stamp_s) continue;
     listed.list.images.push_back({Stamp{stamp_s, fmt::format("{:.6f}", stamp_s)}, {}});
     listed.images.push_back(image);
   }

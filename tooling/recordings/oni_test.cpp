@@ -193,6 +193,20 @@ TEST_F(OniRecording, OfWhichTheEndIsMissingHasWhatIsThere) {
   EXPECT_LT(cv::norm(sequence.read(FrameId(1))->color.mat, frame(1)->color.mat, cv::NORM_INF), 60);
 }
 
+TEST_F(OniRecording, LeavesImagesOutThatRepeatAStamp) {
+  OniWriter writer = begun("NONE", "NONE");
+  for (const std::uint64_t stamp : {std::uint64_t{0}, std::uint64_t{1} << 63U}) {
+    for (std::uint64_t i = 0; i < 2; ++i) {  // the same in seconds
+      writer.image(1, stamp + (stamp > 0 ? i : 0), bytes_of(frame(0)->color.mat));
+      writer.image(2, stamp, bytes_of(millimetres(0)));
+    }
+  }
+  write_file_atomically(path(), writer.bytes());
+  EXPECT_EQ(open().size(), 2U);
+  EXPECT_THAT(open().remarks().warnings,
+              Contains("Image: 2 images have the stamp of another and are left out"));
+}
+
 TEST_F(OniRecording, SaysWhatIsMissing) {
   const auto error = [&](const std::string& bytes) {
     write_file_atomically(path(), bytes);
