@@ -15,6 +15,7 @@
 #include "stillmap/io/ply.hpp"
 #include "stillmap/sensor/camera_io.hpp"
 #include "tests/support/bridge_messages.hpp"
+#include "tests/support/oni_writer.hpp"
 #include "tests/support/sample_config.hpp"
 
 namespace stillmap {
@@ -192,6 +193,22 @@ void write_rosbridge_messages(const fs::path& folder) {
   write(folder, "rosbridge", all);
 }
 
+void write_oni_files(const fs::path& folder) {
+  std::vector<std::string> all;
+  for (const char* codec : {"16zT", "16zP"}) {
+    OniWriter writer;
+    writer.add_stream(1, OniWriter::kColor, "NONE", {4, 3});
+    writer.add_stream(2, OniWriter::kDepth, codec, {4, 3});
+    writer.field_of_view(1, 1, 0.8);
+    writer.integer(2, "xnMirror", 1);
+    writer.image(1, 5, std::string(36, 'x'));
+    writer.image(2, 5, encode_oni_depth(cv::Mat1w(3, 4, std::uint16_t{1500}), codec[3] == 'T'));
+    writer.end();
+    all.push_back(writer.bytes());
+  }
+  write(folder, "oni", all);
+}
+
 }  // namespace
 
 void write_corpus(const fs::path& folder) {
@@ -200,6 +217,7 @@ void write_corpus(const fs::path& folder) {
   write_layouts(folder);
   write_ros_messages(folder);
   write_rosbridge_messages(folder);
+  write_oni_files(folder);
   write(folder,
         "ply",
         {encode_ply(some_points()), encode_ply(some_points(), PlyFormat::kAscii), encode_ply({})});

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -18,6 +20,7 @@
 #include "stillmap/sensor/camera_io.hpp"
 #include "stillmap/sensor/sequence_stream.hpp"
 #include "tests/support/files.hpp"
+#include "tests/support/oni_writer.hpp"
 #include "tooling/pipeline/run_sequence.hpp"
 #include "tooling/recordings/recording_formats.hpp"
 
@@ -75,9 +78,12 @@ std::string stamp(std::uint32_t frame) {
   return fmt::format("{:.6f}", 100 + frame / 30.0);
 }
 
-Trajectory trajectory_of(const fs::path& path, const std::string& format, const char* forced = "") {
-  const Sequence sequence =
-      Sequence::open(path, {.format = forced, .formats = recording_formats()});
+Trajectory trajectory_of(const fs::path& path,
+                         const std::string& format,
+                         const char* forced = "",
+                         std::optional<CameraModel> camera = {}) {
+  const Sequence sequence = Sequence::open(
+      path, {.camera = std::move(camera), .format = forced, .formats = recording_formats()});
   EXPECT_EQ(sequence.format(), format);
   SequenceStream frames(sequence);
   RunOptions options;
@@ -265,6 +271,23 @@ TEST_F(LayoutRun, OfEurocAndKitti) {
   expect_same(all_.run("kitti", "kitti"), of_euroc, kRounded);
   // Nearly that of depth that was measured.
   expect_same(of_euroc, reference(), 0.03);
+}
+
+TEST_F(LayoutRun, OfAFileOfOpenNi) {
+  OniWriter writer;
+  const CameraModel& c = scene().camera;
+  writer.add_stream(1, OniWriter::kColor, "NONE", {c.width_px, c.height_px});
+  writer.add_stream(2, OniWriter::kDepth, "16zT", {c.width_px, c.height_px});
+  for (std::uint32_t i = 0; i < kFrames; ++i) {
+    const auto us = static_cast<std::uint64_t>(std::llround(1e6 * i / 30.0));
+    const cv::Mat3b& color = scene().colors[i].mat;
+    writer.image(1, us, {reinterpret_cast<const char*>(color.data), color.total() * 3});
+    writer.image(2, us, encode_oni_depth(scene().millimetres[i], true));
+  }
+  writer.end();
+  all_.write("scene.oni", writer.bytes());
+  // Its axis is not in the middle of the image, as that of a field of view is.
+  expect_same(trajectory_of(all_.path("scene.oni"), "oni", "", c), reference(), kExact);
 }
 
 #if STILLMAP_WITH_BAG_WRITER

@@ -18,6 +18,7 @@
 
 #include <OpenNI.h>
 
+#include "stillmap/sensor/field_of_view.hpp"
 #include "tooling/devices/device_request.hpp"
 #include "tooling/devices/image_pairs.hpp"
 #include "tooling/devices/openni_plug.hpp"
@@ -223,14 +224,9 @@ void OpenNiDevice::read_camera(const openni::VideoMode& mode) {
   const double down = static_cast<double>(color_stream_.getVerticalFieldOfView());
   camera_.reset();
   if (!(across > 0) || !(down > 0)) return;
-  CameraModel camera;
+  CameraModel camera =
+      pinhole_of_view({mode.getResolutionX(), mode.getResolutionY()}, across, down);
   camera.name = name_;
-  camera.width_px = mode.getResolutionX();
-  camera.height_px = mode.getResolutionY();
-  camera.fx = 0.5 * camera.width_px / std::tan(0.5 * across);
-  camera.fy = 0.5 * camera.height_px / std::tan(0.5 * down);
-  camera.cx = 0.5 * (camera.width_px - 1);
-  camera.cy = 0.5 * (camera.height_px - 1);
   camera.depth_factor = depth_factor_;
   camera_ = camera;
 }

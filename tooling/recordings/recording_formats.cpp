@@ -5,6 +5,8 @@
 
 #include "tooling/recordings/euroc.hpp"
 #include "tooling/recordings/kitti.hpp"
+#include "tooling/recordings/oni.hpp"
+#include "tooling/recordings/oni_file.hpp"
 #include "tooling/recordings/ros_bag.hpp"
 
 namespace stillmap {
@@ -12,7 +14,8 @@ namespace stillmap {
 std::span<const SequenceFormat> recording_formats() {
   static const std::vector<SequenceFormat> kFormats = [] {
     std::vector<SequenceFormat> formats = {
-        {"rosbag", "a bag of ROS 1 (*.bag)", is_ros_bag, open_ros_bag}};
+        {"rosbag", "a bag of ROS 1 (*.bag)", is_ros_bag, open_ros_bag},
+        {"oni", "a recording of OpenNI (*.oni)", is_oni, open_oni}};
     const std::span<const SequenceFormat> folders = folder_formats();
     formats.insert(formats.end(), folders.begin(), folders.end());
     formats.push_back({"euroc", "mav0/ with cam0/ and cam1/", is_euroc, open_euroc});
