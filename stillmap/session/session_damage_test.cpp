@@ -59,10 +59,10 @@ TEST(SessionDamage, SaysWhatItIs) {
   EXPECT_THAT(problem("ply\nformat ascii"), HasSubstr("not a stillmap session: expected"));
   EXPECT_THAT(problem("stillm"), HasSubstr("truncated"));
   EXPECT_THAT(problem(session_head(7) + bytes.substr(kSessionHeadSize)),
-              HasSubstr("written by a newer stillmap (format 7; this one reads 3): install"));
+              HasSubstr("written by a newer stillmap (format 7; this one reads 4): install"));
   EXPECT_THAT(
       problem(session_head(1) + bytes.substr(kSessionHeadSize)),
-      HasSubstr("written by an older stillmap (format 1; this one reads 3): make it again"));
+      HasSubstr("written by an older stillmap (format 1; this one reads 4): make it again"));
   EXPECT_NE(problem(session_head(0) + bytes.substr(kSessionHeadSize)), "");
   std::string changed = bytes;
   changed[40] ^= 1;
@@ -151,6 +151,8 @@ TEST(SessionDamage, WrongRecordsAreRefused) {
       {"view 1: it is empty", [](S s) { s.views[1].view = nullptr; }},
       {"view 1: arrays", [&](S s) { view(s, [](StaticView& v) { v.cloud.colors.pop_back(); }); }},
       {"view 1: arrays", [&](S s) { view(s, [](StaticView& v) { v.cloud.labels.pop_back(); }); }},
+      {"view 1: its time", [](S s) { s.views[1].depth_after_color_s = NAN; }},
+      {"view 1: its time", [](S s) { s.views[1].depth_after_color_s = -1.5; }},
       {"view 1: where", [&](S s) { view(s, [](StaticView& v) { v.cloud.origin.z() = NAN; }); }},
       {"view 1: where", [&](S s) { view(s, [](StaticView& v) { v.cloud.origin.x() = 2e9F; }); }},
       {"view 1: where", [&](S s) { view(s, [](StaticView& v) { v.cloud.step.y() = -1e-9F; }); }},
