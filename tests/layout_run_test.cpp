@@ -25,7 +25,7 @@
 #include "tooling/recordings/recording_formats.hpp"
 
 #if STILLMAP_WITH_BAG_WRITER
-#include "tests/support/bags/bag_writer.hpp"
+#include "tests/support/bags/bag_messages.hpp"
 #endif
 
 namespace stillmap {
@@ -292,32 +292,13 @@ TEST_F(LayoutRun, OfAFileOfOpenNi) {
 
 #if STILLMAP_WITH_BAG_WRITER
 
-template <class Pixels>
-ImageToWrite to_write(const Pixels& pixels, const std::string& encoding) {
-  ImageToWrite image;
-  image.width_px = static_cast<std::uint32_t>(pixels.cols);
-  image.height_px = static_cast<std::uint32_t>(pixels.rows);
-  image.encoding = encoding;
-  image.row_bytes = static_cast<std::uint32_t>(pixels.cols * pixels.elemSize());
-  image.bytes.assign(pixels.data, pixels.data + pixels.total() * pixels.elemSize());
-  return image;
-}
-
 TEST_F(LayoutRun, OfABagOfRos) {
-  const CameraModel& c = scene().camera;
   {
     BagWriter writer(all_.path("scene.bag").string());
-    InfoToWrite info;
-    info.width_px = static_cast<std::uint32_t>(c.width_px);
-    info.height_px = static_cast<std::uint32_t>(c.height_px);
-    info.model = "plumb_bob";
-    info.D = {0, 0, 0, 0, 0};
-    info.K = {c.fx, 0, c.cx, 0, c.fy, c.cy, 0, 0, 1};
-    info.P = {c.fx, 0, c.cx, 0, 0, c.fy, c.cy, 0, 0, 0, 1, 0};
     for (std::uint32_t i = 0; i < kFrames; ++i) {
       const std::uint64_t ns =
           100'000'000'000U + static_cast<std::uint64_t>(std::llround(1e6 * i / 30.0)) * 1000U;
-      writer.write("/camera/color/camera_info", ns, info);
+      writer.write("/camera/color/camera_info", ns, to_write(scene().camera));
       writer.write("/camera/color/image_raw", ns, to_write(scene().colors[i].mat, "rgb8"));
       writer.write("/camera/aligned_depth_to_color/image_raw",
                    ns,

@@ -19,7 +19,7 @@
 #include "tooling/recordings/recording_formats.hpp"
 
 #if STILLMAP_WITH_BAG_WRITER
-#include "tests/support/bags/bag_writer.hpp"
+#include "tests/support/bags/bag_messages.hpp"
 #endif
 
 namespace stillmap {
@@ -43,28 +43,6 @@ TEST(RosBagFile, IsRecognised) {
 }
 
 #if STILLMAP_WITH_BAG_WRITER
-
-template <class Pixels>
-ImageToWrite to_write(const Pixels& pixels, const std::string& encoding) {
-  ImageToWrite image;
-  image.width_px = static_cast<std::uint32_t>(pixels.cols);
-  image.height_px = static_cast<std::uint32_t>(pixels.rows);
-  image.encoding = encoding;
-  image.row_bytes = static_cast<std::uint32_t>(pixels.cols * pixels.elemSize());
-  image.bytes.assign(pixels.data, pixels.data + pixels.total() * pixels.elemSize());
-  return image;
-}
-
-InfoToWrite to_write(const CameraModel& camera) {
-  InfoToWrite info;
-  info.width_px = static_cast<std::uint32_t>(camera.width_px);
-  info.height_px = static_cast<std::uint32_t>(camera.height_px);
-  info.model = "plumb_bob";
-  info.D = {0, 0, 0, 0, 0};
-  info.K = {camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1};
-  info.P = {camera.fx, 0, camera.cx, 0, 0, camera.fy, camera.cy, 0, 0, 0, 1, 0};
-  return info;
-}
 
 std::uint64_t nanoseconds(double seconds) {
   return static_cast<std::uint64_t>(std::llround(seconds * 1e6)) * 1000U;
