@@ -14,9 +14,10 @@ namespace {
 constexpr std::size_t kPart = 1000;          // frames that are smoothed together
 constexpr std::int64_t kPartLagFrames = 30;  // its work is far shorter
 
-/// Consecutive frames of one submap, and their records.
+/// Consecutive frames of one submap, their records, and the poses that these have.
 struct Stretch {
   std::vector<std::size_t> records;
+  std::vector<Eigen::Isometry3d> T_world_recorded;
   std::vector<MeasuredPose> measured;
 };
 
@@ -33,14 +34,16 @@ std::vector<Stretch> stretches(const Session& session,
   std::map<SubmapId, Stretch> by_submap;
   for (std::size_t i = 0; i < count; ++i) {
     const FrameRecord& frame = session.frames[first_record + i];
-    Eigen::Isometry3d T = T_world_frame(session, frame);
-    const bool defines_axes = is_identity(T);
+    const Eigen::Isometry3d T_recorded = T_world_frame(session, frame);
+    const bool defines_axes = is_identity(T_recorded);
+    Eigen::Isometry3d T = T_recorded;
     // The map has corrected the key frames.
     if (!is_identity(frame.T_reference_frame)) {
       T = perturb_left(T.inverse(), measured[i].time_correction.step(times)).inverse();
     }
     Stretch& stretch = by_submap[submap_of(session, frame)];
     stretch.records.push_back(first_record + i);
+    stretch.T_world_recorded.push_back(T_recorded);
     stretch.measured.push_back({frame.stamp.seconds, T, measured[i].information, defines_axes});
   }
   std::vector<Stretch> all;
@@ -85,7 +88,7 @@ void SmoothingStage::process(Session& session,
                  for (const Stretch& part : parts) {
                    const std::vector<Eigen::Isometry3d> poses = smooth_trajectory(part.measured);
                    for (std::size_t i = 0; i < poses.size(); ++i) {
-                     const Eigen::Isometry3d& T_world_before = part.measured[i].T_world_camera;
+                     const Eigen::Isometry3d& T_world_before = part.T_world_recorded[i];
                      corrections.push_back({part.records[i], T_world_before.inverse() * poses[i]});
                    }
                  }

@@ -84,17 +84,17 @@ TEST(SmoothingStage, SmoothsThemBesideTheRun) {
   run(&worker);
 }
 
-TEST(SmoothingStage, CorrectsPosesForTheTimesAsKnownAtTheEnd) {
+void correct_times(std::size_t frames, const SmoothingStage& empty) {
   constexpr CameraTimes kTrue{.readout_s = 0.02, .depth_delay_s = -0.01};
   Session session = session_of_one_keyframe();
   const Eigen::Isometry3d T_keyframe_world = session.map.T_world_keyframe(KeyframeId(0)).inverse();
-  SmoothingStage stage(true, {});
+  SmoothingStage stage = empty;
   Walk walk;
   std::vector<MeasuredPose> measured;
-  for (std::size_t i = 0; i < 300; ++i) {
+  for (std::size_t i = 0; i < frames; ++i) {
     measured.push_back(walk.next());
     // Measured before the times were known, for the first half.
-    const double per_s = i < 150 ? std::cos(static_cast<double>(i)) : 0;
+    const double per_s = i < frames / 2 ? std::cos(static_cast<double>(i)) : 0;
     TimeCorrection correction;
     correction.by_times.col(0).setConstant(per_s);
     correction.by_times.col(1).setConstant(-2 * per_s);
@@ -104,6 +104,7 @@ TEST(SmoothingStage, CorrectsPosesForTheTimesAsKnownAtTheEnd) {
     session.frames.push_back(
         {{measured.back().stamp_s, {}}, KeyframeId(0), T_keyframe_world * T_wrong});
     stage.add({measured.back().information, correction});
+    stage.process(session, kTrue, static_cast<std::int64_t>(i));
   }
   stage.finish(session, kTrue);
   const std::vector<Eigen::Isometry3d> expected = smooth_trajectory(measured);
@@ -111,6 +112,14 @@ TEST(SmoothingStage, CorrectsPosesForTheTimesAsKnownAtTheEnd) {
     const Eigen::Isometry3d T = T_world_frame(session, session.frames[i]);
     EXPECT_LT((T.translation() - expected[i].translation()).norm(), 1e-3) << i << ": of up to 4 cm";
   }
+}
+
+TEST(SmoothingStage, CorrectsPosesForTheTimesAsKnownAtTheEnd) {
+  correct_times(300, SmoothingStage(true, {}));
+}
+
+TEST(SmoothingStage, CorrectsEarlyPosesForTheTimesWhileTheRunGoesOn) {
+  correct_times(1700, SmoothingStage(true, {}, 500));
 }
 
 TEST(SmoothingStage, LeavesPosesAloneThatAreNotToBeSmoothed) {
