@@ -9,6 +9,7 @@
 
 #include "stillmap/core/error.hpp"
 #include "stillmap/io/atomic_file.hpp"
+#include "stillmap/io/depth_units.hpp"
 #include "stillmap/io/jpeg_codec.hpp"
 #include "stillmap/io/png_codec.hpp"
 
@@ -17,9 +18,6 @@ namespace {
 
 // Enough for 8192 x 8192 pixels of 24 bits that do not compress at all.
 constexpr std::size_t kMaxImageFileBytes = std::size_t{256} << 20U;
-
-// What some drivers write where nothing was measured.
-constexpr std::uint16_t kSaturated = 65535;
 
 std::string read_image_file(const std::filesystem::path& path) {
   std::error_code ignored;
@@ -61,17 +59,8 @@ DepthImage read_depth(const std::filesystem::path& path, double depth_factor) {
   if (!is_png(bytes)) {
     throw DamagedImage("{}: not a PNG, expected a 16-bit depth PNG", path.string());
   }
-  const cv::Mat1w raw(decode_png(bytes, PngKind::kGray16, path.string()));
-  cv::Mat1f metres(raw.size());
-  const float factor = static_cast<float>(depth_factor);
-  for (int v = 0; v < raw.rows; ++v) {
-    const std::uint16_t* source = raw[v];
-    float* target = metres[v];
-    for (int u = 0; u < raw.cols; ++u) {
-      target[u] = source[u] == kSaturated ? 0.0F : static_cast<float>(source[u]) / factor;
-    }
-  }
-  return DepthImage(metres);
+  return depth_of_units(cv::Mat1w(decode_png(bytes, PngKind::kGray16, path.string())),
+                        depth_factor);
 }
 
 cv::Mat1b read_mask(const std::filesystem::path& path) {
@@ -108,7 +97,7 @@ std::string encode_depth_png(const DepthImage& depth, double depth_factor) {
   for (int v = 0; v < raw.rows; ++v) {
     for (int u = 0; u < raw.cols; ++u) {
       const double value = std::round(static_cast<double>(depth.mat(v, u)) * depth_factor);
-      const bool fits = value >= 0.0 && value < kSaturated;  // false for NaN
+      const bool fits = value >= 0.0 && value < kSaturatedDepth;  // false for NaN
       raw(v, u) = fits ? static_cast<std::uint16_t>(value) : std::uint16_t{0};
     }
   }

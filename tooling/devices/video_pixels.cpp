@@ -5,6 +5,7 @@
 #include <linux/videodev2.h>
 #include <opencv2/imgproc.hpp>
 
+#include "stillmap/io/depth_units.hpp"
 #include "stillmap/io/image_io.hpp"
 #include "stillmap/io/jpeg_codec.hpp"
 #include "tooling/devices/video_node.hpp"
@@ -75,17 +76,7 @@ DepthImage video_depth(const RawVideo& raw,
                        double depth_factor,
                        const std::string& place) {
   check_undamaged(raw, place);
-  constexpr std::uint16_t kNothing = 65535;
-  const cv::Mat1w units(pixels_of(raw, layout, CV_16UC1, place));
-  cv::Mat1f metres(units.size());
-  const float factor = static_cast<float>(depth_factor);
-  for (int v = 0; v < units.rows; ++v) {
-    for (int u = 0; u < units.cols; ++u) {
-      const std::uint16_t unit = units(v, u);
-      metres(v, u) = unit == kNothing ? 0.0F : static_cast<float>(unit) / factor;
-    }
-  }
-  return DepthImage(metres);
+  return depth_of_units(cv::Mat1w(pixels_of(raw, layout, CV_16UC1, place)), depth_factor);
 }
 
 }  // namespace stillmap

@@ -12,6 +12,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "stillmap/core/error.hpp"
+#include "stillmap/io/depth_units.hpp"
 #include "stillmap/io/image_io.hpp"
 #include "stillmap/sensor/field_of_view.hpp"
 #include "stillmap/sensor/pair_images.hpp"
@@ -87,13 +88,8 @@ class OniImages : public ImageReader {
     const std::string place = fmt::format("{}, frame {}", depth_.name, index);
     const cv::Mat1w units =
         decode_oni_depth(file_->read(pairs_.at(index).second), depth_.codec, depth_.size, place);
-    cv::Mat1f metres(units.size());
-    const float factor = static_cast<float>(depth_.units_per_m);
-    std::transform(units.begin(), units.end(), metres.begin(), [factor](std::uint16_t unit) {
-      constexpr std::uint16_t kNothing = 65535;
-      return unit == kNothing ? 0.0F : static_cast<float>(unit) / factor;
-    });
-    return DepthImage(unmirrored(metres, depth_.mirrored));
+    const DepthImage metres = depth_of_units(units, depth_.units_per_m);
+    return DepthImage(unmirrored(metres.mat, depth_.mirrored));
   }
 
  private:

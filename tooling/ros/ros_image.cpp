@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "stillmap/core/error.hpp"
+#include "stillmap/io/depth_units.hpp"
 #include "stillmap/io/image_io.hpp"
 #include "stillmap/io/jpeg_codec.hpp"
 #include "stillmap/io/png_codec.hpp"
@@ -87,11 +88,10 @@ cv::Mat1f converted(const cv::Mat& stored, const Metres& metres) {
 }
 
 cv::Mat1f from_units(const cv::Mat1w& stored, double depth_factor) {
-  constexpr std::uint16_t kNothing = 65535;  // where some cameras measured nothing
   const float factor = static_cast<float>(depth_factor);
   return converted(stored, [&](int row, int column) {
     const std::uint16_t raw = stored(row, column);
-    return raw == kNothing ? 0.0F : static_cast<float>(raw) / factor;
+    return raw == kSaturatedDepth ? 0.0F : static_cast<float>(raw) / factor;
   });
 }
 
