@@ -6,7 +6,6 @@
 namespace stillmap {
 
 Features at_pose_time(Features features, const CameraModel& camera, const FrameTiming& timing) {
-  const CameraVelocity turn{Eigen::Vector3d::Zero(), timing.velocity.angular};
   const double depth_after_s = timing.depth_after_color_s();
   for (std::size_t i = 0; i < features.size(); ++i) {
     const bool known = features.sensor_depth_m[i] > 0;
@@ -21,7 +20,7 @@ Features at_pose_time(Features features, const CameraModel& camera, const FrameT
     const double after_middle_s =
         row_position(features.raw_px[i], camera) * timing.assumed.readout_s;
     const Eigen::Vector3d p_middle =
-        p - after_middle_s * (known ? timing.velocity : turn).of_point(p);
+        p - after_middle_s * corrected_velocity(timing.velocity, known).of_point(p);
     if (p_middle.z() < kMinPointDepth) continue;
     features.px[i] = camera.project(p_middle).cast<float>();
     features.depth_m[i] = known ? static_cast<float>(p_middle.z()) : 0.0F;

@@ -18,4 +18,21 @@ namespace stillmap {
                                     const CameraModel& camera,
                                     const FrameTiming& timing);
 
+/// The velocity that at_pose_time() corrects a feature for.
+[[nodiscard]] inline CameraVelocity corrected_velocity(CameraVelocity velocity, bool has_depth) {
+  if (!has_depth) velocity.linear.setZero();
+  return velocity;
+}
+
+/// The derivative of a feature's residual by the camera's times, (readout_s, depth_delay_s), for
+/// the motion of its residual per second, of which the third is zero without depth. A correction
+/// moves the measurement against the motion of the point.
+[[nodiscard]] inline Eigen::Matrix<double, 3, 2> residual_by_times(const Eigen::Vector3d& motion,
+                                                                   double row) {
+  Eigen::Matrix<double, 3, 2> result = Eigen::Matrix<double, 3, 2>::Zero();
+  result.col(0) = row * motion;
+  result(2, 1) = motion.z();
+  return result;
+}
+
 }  // namespace stillmap

@@ -3,6 +3,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "stillmap/slam/optim/pose_time.hpp"
 #include "stillmap/slam/optim/reprojection.hpp"
 
 namespace stillmap {
@@ -34,15 +35,10 @@ PoseByTimes pose_by_times(const CameraModel& camera,
     const PointMeasurement& m = observations[i].measurement;
     const Eigen::Vector3d p = T_camera_world * observations[i].p_world;
     if (p.z() < kMinPointDepth) continue;
-    CameraVelocity corrected = velocity;
-    if (!m.has_depth()) corrected.linear.setZero();
     const Eigen::Matrix3d J = reprojection_jacobian(camera, m, p);
-    // A correction moves the measurement against the motion of the point.
-    const Eigen::Vector3d motion = J * corrected.of_point(p);
-    Eigen::Matrix<double, 3, 2> residual_by_times = Eigen::Matrix<double, 3, 2>::Zero();
-    residual_by_times.col(0) = row[i] * motion;
-    residual_by_times(2, 1) = motion.z();  // zero without depth
-    g.noalias() += observations[i].trust * pose_jacobian(J, p).transpose() * residual_by_times;
+    const Eigen::Vector3d motion = J * corrected_velocity(velocity, m.has_depth()).of_point(p);
+    g.noalias() +=
+        observations[i].trust * pose_jacobian(J, p).transpose() * residual_by_times(motion, row[i]);
   }
   return -information.ldlt().solve(g);
 }

@@ -4,6 +4,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "stillmap/slam/optim/pose_time.hpp"
+
 namespace stillmap {
 namespace {
 
@@ -28,15 +30,11 @@ Linearized linearize(const TimedBundle& bundle, std::size_t i) {
   const FrameTiming& timing = bundle.timing[o.camera];
   const Eigen::Vector3d p = T * bundle.problem.points[o.point];
   const Eigen::Matrix3d J = reprojection_jacobian(camera, o.measurement, p);
-  // A correction moves the measurement against the motion of the point.
-  const Eigen::Vector3d motion = J * timing.smooth_velocity.of_point(p);
   Linearized result{pose_jacobian(J, p), J * T.linear(), Columns::Zero()};
-  result.columns.col(0) = bundle.row[i] * motion;
-  result.columns(2, 1) = motion.z();  // zero without depth
-  CameraVelocity assumed = timing.velocity;
-  // Features without depth are corrected for rotation only.
-  if (!o.measurement.has_depth()) assumed.linear.setZero();
-  const Eigen::Vector3d corrected = J * assumed.of_point(p);
+  result.columns.leftCols<2>() =
+      residual_by_times(J * timing.smooth_velocity.of_point(p), bundle.row[i]);
+  const Eigen::Vector3d corrected =
+      J * corrected_velocity(timing.velocity, o.measurement.has_depth()).of_point(p);
   result.columns.col(2) = reprojection_residual(camera, o.measurement, p) -
                           bundle.row[i] * timing.assumed.readout_s * corrected -
                           timing.assumed.depth_delay_s * corrected.z() * Eigen::Vector3d::UnitZ();
