@@ -258,8 +258,10 @@ TEST_F(MapOfRun, ResidueFindsWhatIsNotThere) {
         figures(std::string("evaluate residue out wall") + options)["residue"];
     EXPECT_EQ(found["points"], points + 100);
     EXPECT_NEAR(found["seen_through"].get<double>(), clean["seen_through"].get<double>() + 100, 3);
+    EXPECT_NEAR(found["by_noise"].get<double>(), clean["by_noise"].get<double>(), 3);
   }
-  EXPECT_THAT(run("evaluate residue out wall").out, HasSubstr("of 60 frames"));
+  EXPECT_THAT(run("evaluate residue out wall").out,
+              AllOf(HasSubstr("of 60 frames"), HasSubstr("noise floor")));
 }
 
 TEST_F(MapOfRun, ResidueRefusesOtherSequences) {

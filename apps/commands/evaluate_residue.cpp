@@ -109,12 +109,15 @@ void evaluate_residue(const ResidueArguments& arguments) {
     return;
   }
   print_output(fmt::format(
-      "residue     {:.4f} %\n{} of {} points are seen through by at least {} of {} frames\n",
+      "residue     {:.4f} %\n{} of {} points are seen through by at least {} of {} frames\n"
+      "noise floor {:.4f} %\n{} of these points are surface that as many frames measure\n",
       100 * residue.ratio(),
       residue.seen_through,
       residue.points,
       kSeeThroughFrames,
-      residue.frames));
+      residue.frames,
+      100 * residue.noise_floor(),
+      residue.by_noise));
 }
 
 }  // namespace

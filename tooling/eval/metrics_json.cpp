@@ -76,7 +76,9 @@ Json map_quality_json(const std::optional<MapQuality>& known) {
 Json residue_json(const Residue& residue) {
   return {{"ratio", residue.points > 0 ? Json(residue.ratio()) : Json()},
           {"points", residue.points},
+          {"noise_floor", residue.points > 0 ? Json(residue.noise_floor()) : Json()},
           {"seen_through", residue.seen_through},
+          {"by_noise", residue.by_noise},
           {"frames", residue.frames}};
 }
 

@@ -55,10 +55,12 @@ TEST(MetricsJson, NamesTheFiguresOfAMap) {
 }
 
 TEST(MetricsJson, NamesTheResidue) {
-  EXPECT_EQ(residue_json({.points = 8, .seen_through = 2, .frames = 5}).dump(),
-            R"({"ratio":0.25,"points":8,"seen_through":2,"frames":5})");
-  EXPECT_EQ(residue_json({.points = 0, .seen_through = 0, .frames = 5}).dump(),
-            R"({"ratio":null,"points":0,"seen_through":0,"frames":5})");
+  EXPECT_EQ(
+      residue_json({.points = 8, .seen_through = 2, .by_noise = 1, .frames = 5}).dump(),
+      R"({"ratio":0.25,"points":8,"noise_floor":0.125,"seen_through":2,"by_noise":1,"frames":5})");
+  EXPECT_EQ(
+      residue_json({.points = 0, .seen_through = 0, .frames = 5}).dump(),
+      R"({"ratio":null,"points":0,"noise_floor":null,"seen_through":0,"by_noise":0,"frames":5})");
 }
 
 TEST(MetricsJson, GivesTheShareOfTrackedFrames) {

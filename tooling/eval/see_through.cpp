@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tooling/eval/see_through.hpp"
 
-#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "stillmap/core/error.hpp"
@@ -30,25 +30,35 @@ Eigen::AlignedBox2d ideal_image(const CameraModel& camera) {
   return box;
 }
 
+// Up to the largest number of its type: a long recording looks more often.
+void count_up(std::uint16_t& times) {
+  if (times < std::numeric_limits<std::uint16_t>::max()) ++times;
+}
+
 }  // namespace
 
 SeeThroughTest::SeeThroughTest(const CameraModel& camera, std::vector<Eigen::Vector3f> points_world)
     : camera_(camera),
       ideal_image_px_(ideal_image(camera)),
       points_(std::move(points_world)),
-      times_(points_.size(), 0) {}
+      looks_(points_.size()) {}
 
-bool SeeThroughTest::sees_through(const DepthImage& depth, const Eigen::Vector3d& p_camera) const {
+void SeeThroughTest::look(const DepthImage& depth,
+                          const Eigen::Vector3d& p_camera,
+                          Looks& looks) const {
   const Eigen::Vector2d ideal_px = camera_.project(p_camera);
-  if (!ideal_image_px_.contains(ideal_px)) return false;
+  if (!ideal_image_px_.contains(ideal_px)) return;
   const Eigen::Vector2d raw_px = camera_.distorted() ? camera_.distort(ideal_px) : ideal_px;
   const double column = std::floor(raw_px.x() + 0.5);
   const double row = std::floor(raw_px.y() + 0.5);
   const bool inside = column >= 0 && row >= 0 && column < depth.mat.cols && row < depth.mat.rows;
-  if (!inside) return false;
+  if (!inside) return;
   const double z = static_cast<double>(depth.mat(static_cast<int>(row), static_cast<int>(column)));
-  if (!(z > p_camera.z())) return false;
-  return z - p_camera.z() > kSeeThroughMargin_m + kSeeThroughSigmas * kDepthSigma * z * z;
+  if (!(z > 0)) return;
+  const double behind_m = z - p_camera.z();
+  const double margin_m = kSeeThroughMargin_m + kSeeThroughSigmas * kDepthSigma * z * z;
+  if (std::abs(behind_m) <= margin_m) count_up(looks.at);
+  if (behind_m > margin_m) count_up(looks.through);
 }
 
 void SeeThroughTest::add(const DepthImage& depth, const Eigen::Isometry3d& T_world_camera) {
@@ -56,17 +66,19 @@ void SeeThroughTest::add(const DepthImage& depth, const Eigen::Isometry3d& T_wor
   ++frames_;
   const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    if (times_[i] >= kSeeThroughFrames) continue;
     const Eigen::Vector3d p_camera = T_camera_world * points_[i].cast<double>();
-    if (p_camera.z() > 0 && sees_through(depth, p_camera)) ++times_[i];
+    if (p_camera.z() > 0) look(depth, p_camera, looks_[i]);
   }
 }
 
 Residue SeeThroughTest::result() const {
-  const auto seen =
-      std::ranges::count_if(times_, [](std::uint8_t times) { return times >= kSeeThroughFrames; });
-  return {
-      .points = points_.size(), .seen_through = static_cast<std::size_t>(seen), .frames = frames_};
+  Residue residue{.points = points_.size(), .frames = frames_};
+  for (const Looks& looks : looks_) {
+    if (looks.through < kSeeThroughFrames) continue;
+    ++residue.seen_through;
+    if (looks.through <= looks.at) ++residue.by_noise;
+  }
+  return residue;
 }
 
 }  // namespace stillmap

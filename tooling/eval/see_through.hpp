@@ -25,11 +25,20 @@ inline constexpr std::size_t kSeeThroughFrames = 3;
 struct Residue {
   std::size_t points = 0;        ///< points of the map
   std::size_t seen_through = 0;  ///< points seen through by at least kSeeThroughFrames frames
+  /// Those of them that no fewer frames measure than see through: surface, but noise and the rims
+  /// of objects let frames see through it now and then. So does a person who stood there most of
+  /// the time and then left.
+  std::size_t by_noise = 0;
   std::size_t frames = 0;
 
   /// The share of the points that are seen through; 0 without points.
-  [[nodiscard]] double ratio() const {
-    return points > 0 ? static_cast<double>(seen_through) / static_cast<double>(points) : 0.0;
+  [[nodiscard]] double ratio() const { return share(seen_through); }
+  /// The part of ratio() that the frames themselves make: a map without any fault has it, too.
+  [[nodiscard]] double noise_floor() const { return share(by_noise); }
+
+ private:
+  [[nodiscard]] double share(std::size_t count) const {
+    return points > 0 ? static_cast<double>(count) / static_cast<double>(points) : 0.0;
   }
 };
 
@@ -46,13 +55,18 @@ class SeeThroughTest {
   [[nodiscard]] Residue result() const;
 
  private:
-  [[nodiscard]] bool sees_through(const DepthImage& depth, const Eigen::Vector3d& p_camera) const;
+  /// How often frames looked at a point.
+  struct Looks {
+    std::uint16_t through = 0;  ///< and saw surface behind it
+    std::uint16_t at = 0;       ///< and measured it, as far as noise lets them
+  };
+
+  void look(const DepthImage& depth, const Eigen::Vector3d& p_camera, Looks& looks) const;
 
   CameraModel camera_;
   Eigen::AlignedBox2d ideal_image_px_;  ///< bounds of the ideal pixels of the image
   std::vector<Eigen::Vector3f> points_;
-  std::vector<std::uint8_t>
-      times_;  ///< frames that see through each point, up to kSeeThroughFrames
+  std::vector<Looks> looks_;  ///< at each point
   std::size_t frames_ = 0;
 };
 

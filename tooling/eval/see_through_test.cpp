@@ -57,6 +57,22 @@ TEST(SeeThrough, CountsItsPointsAndFrames) {
   EXPECT_EQ(SeeThroughTest(small_camera(), {}).result().ratio(), 0.0);
 }
 
+TEST(SeeThrough, TellsSurfaceUnderNoiseFromWhatIsNotThere) {
+  // The first point is a surface that noise hides now and then, the second one a person who soon
+  // left.
+  SeeThroughTest test(small_camera(), {{0, 0, 2}, {0.1F, 0, 1.5F}});
+  for (int i = 0; i < 8; ++i) {
+    DepthImage depth = wall_at(2);
+    if (i % 2 == 0) depth.mat(24, 32) = 2.3F;  // the pixel of the first point
+    if (i < 3) depth.mat.colRange(34, 38).setTo(1.5F);
+    test.add(depth, Eigen::Isometry3d::Identity());
+  }
+  EXPECT_EQ(test.result().seen_through, 2U);
+  EXPECT_EQ(test.result().by_noise, 1U);
+  EXPECT_EQ(test.result().ratio(), 1.0);
+  EXPECT_EQ(test.result().noise_floor(), 0.5);
+}
+
 // The other way round: for each point, of all pixels the one whose ray passes nearest to it. A
 // distorted camera is tested without its formulas for distorting, by the rays of its pixels.
 bool sees_through_by_rays(const cv::Mat2f& rays,
