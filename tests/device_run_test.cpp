@@ -103,7 +103,7 @@ TEST(DeviceRun, GoesOnAfterAStallAndAfterUnplugging) {
 TEST(DeviceRun, OnItsRecordingHasTheSameBits) {
   for (const int network_ms : {0, 5}) {
     const TemporaryFolder folder;
-    const PersonSegmenter segmenter{std::chrono::milliseconds(network_ms)};
+    const StandInSegmenter segmenter{std::chrono::milliseconds(network_ms)};
     const DeviceRun on_device =
         run_on_device(wall_events(5, 8), &segmenter, folder.path() / "kept");
     EXPECT_EQ(Sequence::open(folder.path() / "kept").size(), kWallFrames);  // dropped ones, too

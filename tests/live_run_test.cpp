@@ -46,7 +46,7 @@ SequenceRun run_again(const Segmenter* segmenter, const LiveRecord& record, int 
 
 TEST(LiveRun, CanBeMadeAgainToTheBit) {
   for (const int network_ms : {0, 3, 20}) {
-    const PersonSegmenter segmenter{std::chrono::milliseconds(network_ms)};
+    const StandInSegmenter segmenter{std::chrono::milliseconds(network_ms)};
     const SequenceRun live = run_live_wall(&segmenter, 0.040);
     EXPECT_LT(live.live_record.size(), kWallFrames);  // some were dropped
     EXPECT_GT(live.report.live->looked_at, 0U);
@@ -65,7 +65,7 @@ TEST(LiveRun, WithoutANetworkNeedsNoMasks) {
 }
 
 TEST(LiveRun, CountsWhatWasDropped) {
-  const PersonSegmenter segmenter{std::chrono::milliseconds(1)};
+  const StandInSegmenter segmenter{std::chrono::milliseconds(1)};
   const SequenceRun live = run_live_wall(&segmenter, 0.100);
   const LiveReport& report = *live.report.live;
   EXPECT_EQ(report.dropped + live.live_record.size(), kWallFrames);
@@ -76,7 +76,7 @@ TEST(LiveRun, CountsWhatWasDropped) {
 
 // The first frame waits for its objects, and key frames are frames that were looked at.
 TEST(LiveRun, KeyframesHaveMasksOfTheirOwn) {
-  const PersonSegmenter segmenter{std::chrono::milliseconds(5)};
+  const StandInSegmenter segmenter{std::chrono::milliseconds(5)};
   const SequenceRun live = run_live_wall(&segmenter, 0.030);
   std::set<std::string> looked_at;
   for (const LiveStep& step : live.live_record) {
@@ -93,7 +93,7 @@ TEST(LiveRun, KeyframesHaveMasksOfTheirOwn) {
 }
 
 TEST(LiveRun, EndsWithTheNetworksError) {
-  const PersonSegmenter segmenter(std::chrono::milliseconds(1), 100.3);
+  const StandInSegmenter segmenter(std::chrono::milliseconds(1), 100.3);
   EXPECT_EQ(error_of([&] { (void)run_live_wall(&segmenter, 0.030); }), "the network is broken");
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is said and shown of maps: `stillmap evaluate map`, `evaluate residue`, `view`, and the
 // figures of `run` where a sequence comes with its true surfaces.
+#include <algorithm>
+
 #include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -154,6 +156,35 @@ TEST_F(MapCommands, ViewsAreTiled) {
   expect_refused("view map.ply --size 10x10 --out a.png", "--size 10x10");
   expect_refused("view map.ply", "--out");
   expect_refused("view map.ply --out no/such/folder/a.png", "no/such/folder");
+}
+
+TEST_F(MapCommands, SurfacesAreDrawnWithoutGaps) {
+  // A square of points, 1 cm apart in its left half and 8 cm in the right one.
+  PointCloud wall;
+  for (int row = 0; row < 100; ++row) {
+    for (int column = 0; column < 100; ++column) {
+      if (column >= 50 && (row % 8 != 0 || column % 8 != 0)) continue;
+      wall.positions.emplace_back(
+          0.01F * static_cast<float>(column), 0.01F * static_cast<float>(row), 1.0F);
+      wall.colors.push_back({200, 100, 50});
+      wall.normals.emplace_back(0.0F, 0.0F, -1.0F);
+    }
+  }
+  write("wall.ply", encode_ply(wall));
+  const auto empty_share = [&](const std::string& options) {
+    EXPECT_EQ(
+        run("view wall.ply --up=z --from top --size 640x480 --out wall.png" + options).exit_code,
+        0);
+    const cv::Mat3b middle = read_color(folder_ / "wall.png").mat(cv::Rect(240, 180, 160, 120));
+    const auto empty = std::count(middle.begin(), middle.end(), cv::Vec3b(255, 255, 255));
+    return static_cast<double>(empty) / static_cast<double>(middle.total());
+  };
+  EXPECT_GT(empty_share(""), 0.1);
+  EXPECT_EQ(empty_share(" --surface --mesh-cell 0.06"), 0.0);
+  expect_refused("view static.ply --surface --out a.png",
+                 "static.ply: --surface needs points with normals");
+  expect_refused("view wall.ply --mesh-cell 0.1 --out a.png", "--surface");
+  expect_refused("view wall.ply --surface --mesh-cell 0 --out a.png", "--mesh-cell");
 }
 
 // ---- with runs ----

@@ -40,7 +40,7 @@ StageProbe slow(Stage slow_stage) {
 }
 
 TEST(Pipeline, SlowStagesDoNotChangeABit) {
-  const PersonSegmenter segmenter;
+  const StandInSegmenter segmenter;
   const SequenceRun plain = run_wall(segmenter, 1, {});
   EXPECT_GT(plain.result.keyframes.size(), 2U);
   for (const Stage stage : kStages) {
@@ -49,11 +49,11 @@ TEST(Pipeline, SlowStagesDoNotChangeABit) {
       expect_same(plain, run_wall(segmenter, threads, slow(stage)));
     }
   }
-  expect_same(plain, run_wall(PersonSegmenter(std::chrono::milliseconds(15)), 2, {}));
+  expect_same(plain, run_wall(StandInSegmenter(std::chrono::milliseconds(15)), 2, {}));
 }
 
 TEST(Pipeline, AnErrorInAnyStageEndsTheRunWithItsMessage) {
-  const PersonSegmenter segmenter;
+  const StandInSegmenter segmenter;
   for (const Stage broken : kStages) {
     for (const int threads : {1, 2, 4}) {
       SCOPED_TRACE(fmt::format("stage {}, {} threads", static_cast<int>(broken), threads));

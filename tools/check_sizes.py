@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Checks every tracked C++ file: length of files and functions, and what the library must not do."""
+"""Checks every tracked C++ file: length of files and functions, what the library must not do, and that a type has its
+name for itself."""
 import bisect
 import pathlib
 import re
@@ -107,6 +108,23 @@ def check_file(path, name):
             yield f"{name}:{scanner.line(start + match.start())}: using namespace outside a function"
 
 
+NAMESPACE = re.compile(r"^namespace ([\w:]+) \{", re.MULTILINE)
+TYPE = re.compile(r"^(?:struct|class|union|enum class) (\w+)(?: final)?(?: : [^;{]*)?\s*\{", re.MULTILINE)
+
+
+def check_types(texts):
+    """`texts`: the headers by name. No compiler notices two types of one name that a program links."""
+    first = {}
+    for name, text in texts.items():
+        code = code_of(text)
+        spaces = [(match.start(), match.group(1)) for match in NAMESPACE.finditer(code)]
+        for match in TYPE.finditer(code):
+            space = next((space for at, space in reversed(spaces) if at < match.start()), "")
+            before = first.setdefault((space, match.group(1)), name)
+            if before != name:
+                yield f"{name}: {space}::{match.group(1)} is another type in {before}: one of them needs another name"
+
+
 def tracked_files(root):
     names = subprocess.run(["git", "ls-files", "-z", "--", "*.cpp", "*.hpp"],
                            cwd=root, check=True, capture_output=True, text=True).stdout
@@ -117,6 +135,7 @@ def main():
     root = pathlib.Path(__file__).resolve().parent.parent
     names = sys.argv[1:] or tracked_files(root)
     problems = [problem for name in names for problem in check_file(root / name, name)]
+    problems += check_types({name: (root / name).read_text() for name in names if name.endswith(".hpp")})
     for problem in problems:
         print(problem)
     print(f"check_sizes: {len(names)} files, {len(problems)} problems")

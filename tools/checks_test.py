@@ -93,6 +93,17 @@ class Files(unittest.TestCase):
         self.assertEqual(self.problems("void f() {\n  using namespace b;\n}\n"), [])
 
 
+class Types(unittest.TestCase):
+    def test_a_name_is_of_one_type(self):
+        mesh = "namespace a {\nstruct Mesh {\n  int x;\n};\n}\n"
+        other = mesh.replace("struct", "class").replace("Mesh {", "Mesh final : Base {")
+        self.assertEqual(list(check_sizes.check_types({"x.hpp": mesh, "y.hpp": other})),
+                         ["y.hpp: a::Mesh is another type in x.hpp: one of them needs another name"])
+        for text in (other.replace("a {", "b {"), "namespace a {\nstruct Mesh;\n}\n", mesh.replace("Mesh", "Net"),
+                     "namespace a {\n// struct Mesh {\n}\n"):
+            self.assertEqual(list(check_sizes.check_types({"x.hpp": mesh, "y.hpp": text})), [])
+
+
 class Layers(unittest.TestCase):
     MODULE = "# SPDX\n# Holds {0}.\nstillmap_module(NAME {0} {1})"
 

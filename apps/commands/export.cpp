@@ -163,7 +163,7 @@ void add_mesh_file(std::vector<FileContent>& files,
         "full; run again, or with --set cloud.fusion=surface",
         arguments.mesh);
   }
-  Mesh mesh;
+  SurfaceMesh mesh;
   try {
     mesh = surface_mesh(map, arguments.mesh_options);
   } catch (const Error& error) {

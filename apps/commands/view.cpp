@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -22,6 +23,7 @@
 #include "stillmap/io/trajectory_io.hpp"
 #include "tooling/eval/map_alignment.hpp"
 #include "tooling/eval/map_files.hpp"
+#include "tooling/export/surface_mesh.hpp"
 #include "tooling/report/map_views.hpp"
 
 namespace stillmap {
@@ -35,6 +37,8 @@ struct ViewArguments {
   std::string size = "640x480";
   std::string groundtruth;
   std::string up;  ///< empty: to be found
+  bool surface = false;
+  double cell_m = MeshOptions{}.cell_m;
 };
 
 struct NamedSide {
@@ -114,6 +118,24 @@ std::string encoded(const ColorImage& picture, const std::string& file) {
   return std::string(bytes.begin(), bytes.end());
 }
 
+// The map's points without triangles, or its surface.
+SurfaceMesh what_is_drawn(const ViewArguments& arguments, std::size_t map, PointCloud cut) {
+  if (!arguments.surface) return {.vertices = std::move(cut), .triangles = {}};
+  const std::string& file = arguments.maps[map];
+  if (cut.normals.empty()) {
+    throw Error("{}: --surface needs points with normals, as the maps of runs have them", file);
+  }
+  SurfaceMesh mesh;
+  try {
+    mesh = surface_mesh(cut, {.cell_m = arguments.cell_m});
+  } catch (const Error& error) {
+    throw Error("{}: --mesh-cell {}: {}", file, arguments.cell_m, error.what());
+  }
+  if (mesh.triangles.empty())
+    throw Error("{}: too few points for a surface; see --mesh-cell", file);
+  return mesh;
+}
+
 void view(const ViewArguments& arguments) {
   const std::vector<NamedSide> sides = chosen_sides(arguments.from);
   const PictureSize size = parse_picture_size(arguments.size);
@@ -130,10 +152,11 @@ void view(const ViewArguments& arguments) {
   const PointCloud first = cut_open(maps.front().cloud, scene);
   std::vector<CaptionedPicture> pictures;
   for (std::size_t i = 0; i < maps.size(); ++i) {
-    const PointCloud cut = cut_open(maps[i].cloud, scene);
+    const SurfaceMesh drawn = what_is_drawn(arguments, i, cut_open(maps[i].cloud, scene));
     for (const NamedSide& side : sides) {
       const View from = view_from(side.side, scene, first, {size.width_px, size.height_px});
-      pictures.push_back({render_smooth(cut, from), caption(arguments, i, side.name)});
+      pictures.push_back(
+          {render_smooth(drawn.vertices, from, drawn.triangles), caption(arguments, i, side.name)});
     }
   }
   const std::size_t columns = sides.size() > 1 ? sides.size() : pictures.size();
@@ -162,6 +185,16 @@ void add_view_command(CLI::App& app, CommandResult&) {
           "axis of the world frame that points up; by default found from floors and tables, "
           "starting from the cameras of the run, or from y down")
       ->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}));
+  CLI::Option* surface =
+      command->add_flag("--surface",
+                        arguments->surface,
+                        "draw the surface as triangles, as `export --mesh` makes it");
+  command
+      ->add_option(
+          "--mesh-cell", arguments->cell_m, "with --surface: edge of a cube of the mesh, metres")
+      ->needs(surface)
+      ->check(CLI::Range(0.005, 1.0))
+      ->capture_default_str();
   command->add_option("--name", arguments->names, "caption of a map; repeatable, in order")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
@@ -172,6 +205,7 @@ void add_view_command(CLI::App& app, CommandResult&) {
   command->footer(
       "Examples:\n"
       "  stillmap view result/map.ply --out map.png\n"
+      "  stillmap view result/map.ply --surface --from front --size 1280x960 --out room.png\n"
       "  stillmap view off/map.ply full/map.ply --from top --out both.png\n"
       "  stillmap view full/map.ply office/truth/static_map.ply --groundtruth "
       "office/groundtruth.txt --out truth.png");

@@ -25,7 +25,7 @@ struct Row {
   std::vector<double> shares, errors_m;  // of those accepted
 };
 
-LoopView view_of(const View& view, const MeasurementModel& measure) {
+LoopView view_of(const PlaceView& view, const MeasurementModel& measure) {
   Keyframe keyframe;
   keyframe.features = view.features;
   return loop_view(keyframe, Map(measure.level_scales()), view.camera, measure);
@@ -37,7 +37,7 @@ double quantile(std::vector<double> values, double q) {
   return values[static_cast<std::size_t>(q * static_cast<double>(values.size() - 1))];
 }
 
-std::string row_name(const View& a, const View& b) {
+std::string row_name(const PlaceView& a, const PlaceView& b) {
   if (relation(a, b) == Relation::kDifferent) {
     return a.room == b.room ? a.room + ", elsewhere" : a.room + " and " + b.room;
   }
@@ -45,7 +45,7 @@ std::string row_name(const View& a, const View& b) {
   return fmt::format("{}, same, {} to {} degrees", a.room, bin, bin + 10);
 }
 
-void add_pair(Row& row, const View& a, const View& b, const MeasurementModel& measure) {
+void add_pair(Row& row, const PlaceView& a, const PlaceView& b, const MeasurementModel& measure) {
   const LoopVerifierConfig chosen, lenient{.min_inliers = 4, .min_share = 0, .max_sigma_m = 10};
   const std::optional<LoopMatch> loop = LoopVerifier(lenient, a.camera, measure, 0)
                                             .verify(FrameId(static_cast<std::uint32_t>(row.pairs)),
@@ -67,9 +67,9 @@ void add_pair(Row& row, const View& a, const View& b, const MeasurementModel& me
 }
 
 int run(const std::vector<std::string>& arguments) {
-  std::vector<View> views;
+  std::vector<PlaceView> views;
   for (const std::string& argument : arguments) {
-    for (View& view : read_views(argument, kGap)) views.push_back(std::move(view));
+    for (PlaceView& view : read_views(argument, kGap)) views.push_back(std::move(view));
   }
   const MeasurementModel measure({.inverse_depth_sigma = 0.01}, pyramid_scales({}));
   std::map<std::string, Row> rows;

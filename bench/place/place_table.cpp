@@ -19,19 +19,19 @@ namespace {
 constexpr std::size_t kGap = 8;
 
 struct Material {
-  std::vector<View> train, known, unknown;
-  std::map<std::string, std::vector<View>> queries;
+  std::vector<PlaceView> train, known, unknown;
+  std::map<std::string, std::vector<PlaceView>> queries;
 };
 
 Material read_material(const std::vector<std::string>& words) {
   Material material;
   for (std::size_t i = 0; i + 3 < words.size(); i += 4) {
     const double begin = std::stod(words[i + 2]), end = std::stod(words[i + 3]);
-    std::vector<View>& into = words[i] == "train"     ? material.train
-                              : words[i] == "known"   ? material.known
-                              : words[i] == "unknown" ? material.unknown
-                                                      : material.queries[words[i]];
-    for (View& view : read_views(words[i + 1], kGap)) {
+    std::vector<PlaceView>& into = words[i] == "train"     ? material.train
+                                   : words[i] == "known"   ? material.known
+                                   : words[i] == "unknown" ? material.unknown
+                                                           : material.queries[words[i]];
+    for (PlaceView& view : read_views(words[i + 1], kGap)) {
       if (view.time_s >= begin && view.time_s < end) into.push_back(std::move(view));
     }
   }
@@ -51,12 +51,12 @@ struct Results {
 
 // `least_deg`: views closer in angle are left out, to measure the cost of a change of view.
 Results ask(const PlaceDesign& design,
-            const std::vector<View>& known,
-            const std::vector<View>& queries,
+            const std::vector<PlaceView>& known,
+            const std::vector<PlaceView>& queries,
             double least_deg,
             bool any) {
   Results results;
-  for (const View& query : queries) {
+  for (const PlaceView& query : queries) {
     const auto start = std::chrono::steady_clock::now();
     const std::vector<double> scores = design.scores(query.features->descriptors);
     results.milliseconds +=
@@ -92,7 +92,7 @@ double recall(const std::vector<Answer>& answers, double above) {
 
 void report(const NamedDesign& named, const Material& material) {
   const std::unique_ptr<PlaceDesign> design = named.make();
-  for (const View& view : material.known) design->add(view.features->descriptors);
+  for (const PlaceView& view : material.known) design->add(view.features->descriptors);
   const Results unknown = ask(*design, material.known, material.unknown, 0, true);
   double threshold = highest_false(unknown.answers), total_ms = unknown.milliseconds;
   std::size_t asked = material.unknown.size();
@@ -124,7 +124,7 @@ std::vector<NamedDesign> all_designs(const Material& material) {
     }
   }
   std::vector<Descriptor> training;
-  for (const View& view : material.train) {
+  for (const PlaceView& view : material.train) {
     training.insert(
         training.end(), view.features->descriptors.begin(), view.features->descriptors.end());
   }

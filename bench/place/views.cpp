@@ -25,7 +25,7 @@ const StampedPose* nearest(const Trajectory& truth, double stamp_s) {
 
 }  // namespace
 
-std::vector<View> read_views(const std::string& text, std::size_t gap) {
+std::vector<PlaceView> read_views(const std::string& text, std::size_t gap) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos) throw Error("{}: expected ROOM=FOLDER", text);
   const std::string label = text.substr(0, equals);
@@ -35,7 +35,7 @@ std::vector<View> read_views(const std::string& text, std::size_t gap) {
   const Sequence sequence = Sequence::open(text.substr(equals + 1), options);
   const Trajectory truth = sequence.groundtruth().value().poses;
   OrbExtractor extractor({}, sequence.camera());
-  std::vector<View> views;
+  std::vector<PlaceView> views;
   for (std::size_t i = 0; i < sequence.size(); i += gap) {
     const FrameId id(static_cast<std::uint32_t>(i));
     const double stamp_s = sequence.entry(id).stamp.seconds;
@@ -51,12 +51,12 @@ std::vector<View> read_views(const std::string& text, std::size_t gap) {
   return views;
 }
 
-double angle_deg(const View& a, const View& b) {
+double angle_deg(const PlaceView& a, const PlaceView& b) {
   const double cosine = a.T_world_camera.linear().col(2).dot(b.T_world_camera.linear().col(2));
   return std::acos(std::clamp(cosine, -1.0, 1.0)) * 180.0 / std::numbers::pi;
 }
 
-Relation relation(const View& a, const View& b) {
+Relation relation(const PlaceView& a, const PlaceView& b) {
   if (a.room.substr(0, a.room.find('.')) != b.room.substr(0, b.room.find('.'))) {
     return Relation::kDifferent;
   }

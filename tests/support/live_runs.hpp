@@ -38,9 +38,9 @@ inline const Sequence& wall_sequence() {
 }
 
 /// Detects a part of the wall as a person, after some time; optionally fails from a stamp on.
-class PersonSegmenter : public Segmenter {
+class StandInSegmenter : public Segmenter {
  public:
-  explicit PersonSegmenter(std::chrono::milliseconds time = {}, double fails_at_s = 1e9)
+  explicit StandInSegmenter(std::chrono::milliseconds time = {}, double fails_at_s = 1e9)
       : time_(time), fails_at_s_(fails_at_s) {}
 
   [[nodiscard]] FrameDetections segment(const ColorImage& color,

@@ -16,9 +16,9 @@ inline constexpr ObservationNoise kNoise{
 inline constexpr MeasurementConfig kMeasurement{.pixel_sigma_px = 0.7, .inverse_depth_sigma = 0.01};
 
 // A camera in a world whose map is true, so that all errors are those of tracking.
-class Walk {
+class SimulatedWalk {
  public:
-  Walk(const CameraPath& path, const TrackerConfig& config, double readout_s = 0)
+  SimulatedWalk(const CameraPath& path, const TrackerConfig& config, double readout_s = 0)
       : path_(path),
         readout_s_(readout_s),
         simulated_(make_map(path)),

@@ -11,7 +11,7 @@ namespace stillmap {
 
 /// An image with the time at which it was taken, by the device's clock.
 template <class Image>
-struct StampedImage {
+struct TimedImage {
   double stamp_s = 0;
   Image image;
 };
@@ -21,7 +21,7 @@ struct StampedImage {
 template <class Color, class Depth>
 class ImagePairs {
  public:
-  using Pair = std::pair<StampedImage<Color>, StampedImage<Depth>>;
+  using Pair = std::pair<TimedImage<Color>, TimedImage<Depth>>;
 
   void add_color(double stamp_s, Color image) { add(color_, {stamp_s, std::move(image)}); }
   void add_depth(double stamp_s, Depth image) { add(depth_, {stamp_s, std::move(image)}); }
@@ -64,8 +64,8 @@ class ImagePairs {
     waiting.erase(waiting.begin(), waiting.begin() + static_cast<std::ptrdiff_t>(index) + 1);
   }
 
-  std::deque<StampedImage<Color>> color_;  // the oldest first
-  std::deque<StampedImage<Depth>> depth_;
+  std::deque<TimedImage<Color>> color_;  // the oldest first
+  std::deque<TimedImage<Depth>> depth_;
 };
 
 }  // namespace stillmap

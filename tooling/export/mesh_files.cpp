@@ -18,7 +18,7 @@ void put_vector(std::string& bytes, const Eigen::Vector3f& v) {
   for (const float value : v) append_bytes(bytes, value);
 }
 
-void check(const Mesh& mesh) {
+void check(const SurfaceMesh& mesh) {
   const PointCloud& v = mesh.vertices;
   STILLMAP_CHECK(v.colors.size() == v.size() && v.normals.size() == v.size());
   STILLMAP_CHECK(v.labels.size() == v.size());
@@ -113,7 +113,7 @@ int add_labels(GltfBuffer& buffer, const PointCloud& vertices) {
       GltfBuffer::Target::kVertices, GltfBuffer::Component::kUint8, "SCALAR", vertices.size(), 4);
 }
 
-int add_triangles(GltfBuffer& buffer, const Mesh& mesh) {
+int add_triangles(GltfBuffer& buffer, const SurfaceMesh& mesh) {
   buffer.begin();
   for (const auto& triangle : mesh.triangles) {
     for (const std::uint32_t i : triangle) append_bytes(buffer.bytes(), i);
@@ -134,7 +134,7 @@ void put_chunk(std::string& bytes, std::string_view type, std::string data, char
 
 }  // namespace
 
-std::string encode_mesh_ply(const Mesh& mesh) {
+std::string encode_mesh_ply(const SurfaceMesh& mesh) {
   check(mesh);
   const PointCloud& vertices = mesh.vertices;
   std::string bytes = fmt::format(
@@ -159,7 +159,7 @@ std::string encode_mesh_ply(const Mesh& mesh) {
   return bytes;
 }
 
-std::string encode_mesh_obj(const Mesh& mesh) {
+std::string encode_mesh_obj(const SurfaceMesh& mesh) {
   check(mesh);
   const PointCloud& vertices = mesh.vertices;
   std::string text = "# stillmap: v x y z red green blue, metres\n";
@@ -188,7 +188,7 @@ std::string encode_mesh_obj(const Mesh& mesh) {
   return text;
 }
 
-std::string encode_mesh_glb(const Mesh& mesh) {
+std::string encode_mesh_glb(const SurfaceMesh& mesh) {
   check(mesh);
   GltfBuffer buffer;
   const nlohmann::json attributes = {{"POSITION", add_positions(buffer, mesh.vertices)},
@@ -218,7 +218,7 @@ std::string encode_mesh_glb(const Mesh& mesh) {
   return bytes + chunks;
 }
 
-std::string encode_mesh(const Mesh& mesh, const std::filesystem::path& file) {
+std::string encode_mesh(const SurfaceMesh& mesh, const std::filesystem::path& file) {
   const std::filesystem::path suffix = file.extension();
   if (suffix == ".ply") return encode_mesh_ply(mesh);
   if (suffix == ".obj") return encode_mesh_obj(mesh);

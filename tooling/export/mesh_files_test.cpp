@@ -17,8 +17,8 @@ namespace stillmap {
 namespace {
 
 /// Two triangles with a common side.
-Mesh roof() {
-  Mesh mesh;
+SurfaceMesh roof() {
+  SurfaceMesh mesh;
   mesh.vertices.positions = {{0, 0, 0}, {1, 0, 0.5F}, {0, 2, 0.25F}, {1, 2, -1}};
   mesh.vertices.normals.assign(4, Eigen::Vector3f(0, 0, 1));
   mesh.vertices.colors = {{255, 0, 0}, {0, 255, 0}, {0, 0, 255}, {188, 188, 188}};
@@ -35,7 +35,7 @@ T value_at(const std::string& bytes, std::size_t offset) {
 }
 
 TEST(MeshFiles, ThePlyHasVerticesThatReadBackAndFaces) {
-  const Mesh mesh = roof();
+  const SurfaceMesh mesh = roof();
   const std::string bytes = encode_mesh_ply(mesh);
   const TemporaryFolder folder;
   write_file_atomically(folder.path() / "mesh.ply", bytes);
@@ -66,7 +66,7 @@ TEST(MeshFiles, TheObjCountsFromOneAndGroupsByLabel) {
 }
 
 TEST(MeshFiles, TheGlbDescribesItsBuffer) {
-  const Mesh mesh = roof();
+  const SurfaceMesh mesh = roof();
   const std::string bytes = encode_mesh_glb(mesh);
   ASSERT_EQ(bytes.substr(0, 4), "glTF");
   EXPECT_EQ(value_at<std::uint32_t>(bytes, 4), 2U);

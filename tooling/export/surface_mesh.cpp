@@ -152,7 +152,7 @@ class SurfaceNets {
         distance_(map, options.cell_m),
         cells_(cells_near(map, options.cell_m, options.most_cells)) {}
 
-  [[nodiscard]] Mesh mesh() {
+  [[nodiscard]] SurfaceMesh mesh() {
     measure_corners();
     for (const Cell& cell : cells_) add_vertex(cell);
     for (const Cell& cell : cells_) add_quads(cell);
@@ -237,12 +237,12 @@ class SurfaceNets {
   std::vector<Cell> cells_;
   CellSet corners_, vertices_;
   std::vector<float> corner_distances_;  // as in corners_
-  Mesh mesh_;
+  SurfaceMesh mesh_;
 };
 
 }  // namespace
 
-Mesh surface_mesh(const PointCloud& map, const MeshOptions& options) {
+SurfaceMesh surface_mesh(const PointCloud& map, const MeshOptions& options) {
   STILLMAP_CHECK(options.cell_m > 0);
   STILLMAP_CHECK(map.normals.size() == map.size());
   return SurfaceNets(map, options).mesh();

@@ -13,7 +13,7 @@
 namespace stillmap {
 
 /// A surface of triangles.
-struct Mesh {
+struct SurfaceMesh {
   PointCloud vertices;  ///< with normals
   /// Indices of vertices, counter-clockwise as seen from where the normals point.
   std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -33,6 +33,6 @@ struct MeshOptions {
 /// change of sign, and a quad across each edge with one. Vertices take the colour and label of the
 /// points around, and the gradient as normal. Vertices and triangles are in a fixed order. Throws
 /// Error for more cubes than `most_cells`.
-[[nodiscard]] Mesh surface_mesh(const PointCloud& map, const MeshOptions& options = {});
+[[nodiscard]] SurfaceMesh surface_mesh(const PointCloud& map, const MeshOptions& options = {});
 
 }  // namespace stillmap

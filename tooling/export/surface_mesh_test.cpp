@@ -38,7 +38,7 @@ PointCloud sphere(float radius, int count) {
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
 /// How often each directed edge occurs.
-std::map<Edge, int> edges(const Mesh& mesh) {
+std::map<Edge, int> edges(const SurfaceMesh& mesh) {
   std::map<Edge, int> count;
   for (const auto& t : mesh.triangles) {
     for (std::size_t k = 0; k < 3; ++k) ++count[{t[k], t[(k + 1) % 3]}];
@@ -46,13 +46,13 @@ std::map<Edge, int> edges(const Mesh& mesh) {
   return count;
 }
 
-Eigen::Vector3f face_normal(const Mesh& mesh, const std::array<std::uint32_t, 3>& t) {
+Eigen::Vector3f face_normal(const SurfaceMesh& mesh, const std::array<std::uint32_t, 3>& t) {
   const auto& p = mesh.vertices.positions;
   return (p[t[1]] - p[t[0]]).cross(p[t[2]] - p[t[0]]);
 }
 
 TEST(SurfaceMesh, ASphereIsClosedAndRound) {
-  const Mesh mesh = surface_mesh(sphere(0.3F, 12000), {.cell_m = 0.02});
+  const SurfaceMesh mesh = surface_mesh(sphere(0.3F, 12000), {.cell_m = 0.02});
   ASSERT_GT(mesh.triangles.size(), 1000U);
   for (const Eigen::Vector3f& p : mesh.vertices.positions) EXPECT_NEAR(p.norm(), 0.3F, 0.002F);
   // Closed: each edge has exactly one triangle on each side. A sphere: V - E + F = 2.
@@ -74,7 +74,7 @@ TEST(SurfaceMesh, ASphereIsClosedAndRound) {
 }
 
 TEST(SurfaceMesh, VerticesHaveTheAttributesOfThePointsAround) {
-  const Mesh mesh = surface_mesh(sphere(0.3F, 12000));
+  const SurfaceMesh mesh = surface_mesh(sphere(0.3F, 12000));
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     const Eigen::Vector3f& p = mesh.vertices.positions[i];
     EXPECT_GT(mesh.vertices.normals[i].dot(p.normalized()), 0.99F);
@@ -99,7 +99,7 @@ PointCloud sheet(const Eigen::Vector3f& normal, float z) {
 }
 
 TEST(SurfaceMesh, EndsWhereThePointsDo) {
-  const Mesh mesh = surface_mesh(sheet({0, 0, 1}, 0.003F));
+  const SurfaceMesh mesh = surface_mesh(sheet({0, 0, 1}, 0.003F));
   ASSERT_GT(mesh.vertices.size(), 500U);
   double area = 0;
   for (const auto& t : mesh.triangles) area += 0.5 * face_normal(mesh, t).norm();
@@ -117,7 +117,7 @@ TEST(SurfaceMesh, ABoardKeepsBothSides) {
   for (std::size_t i = 0; i < back.size(); ++i) {
     add(board, back.positions[i], back.normals[i], back.colors[i]);
   }
-  const Mesh mesh = surface_mesh(board, {.cell_m = 0.01});
+  const SurfaceMesh mesh = surface_mesh(board, {.cell_m = 0.01});
   double front = 0, behind = 0;
   for (const auto& t : mesh.triangles) {
     const Eigen::Vector3f normal = face_normal(mesh, t);

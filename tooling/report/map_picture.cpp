@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include <opencv2/imgproc.hpp>
@@ -46,6 +47,46 @@ void splat(Rendering& rendering, const Eigen::Vector3d& px, int side, const Rgb&
   }
 }
 
+// Twice the signed area of the triangle a, b, p.
+double area(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector2d& p) {
+  return (b.x() - a.x()) * (p.y() - a.y()) - (b.y() - a.y()) * (p.x() - a.x());
+}
+
+/// A projected corner of a triangle.
+struct Corner {
+  Eigen::Vector3d px;  ///< as project_point() gives it
+  Rgb color;
+};
+
+// Of the pixels whose centres the triangle covers. In perspective the inverse depth is linear in
+// the picture; colours are taken for linear, for triangles are small.
+void fill(Rendering& rendering, const std::array<Corner, 3>& corners, bool orthographic) {
+  const auto& [a, b, c] = corners;
+  const double whole = area(a.px, b.px, c.px.head<2>());
+  const Eigen::Vector2d low = a.px.cwiseMin(b.px).cwiseMin(c.px).head<2>().cwiseMax(0);
+  const Eigen::Vector2d high = a.px.cwiseMax(b.px).cwiseMax(c.px).head<2>().cwiseMin(
+      Eigen::Vector2d(rendering.color.cols, rendering.color.rows));
+  if (whole == 0 || (high.array() <= low.array()).any()) return;
+  for (int v = static_cast<int>(low.y()); v < high.y(); ++v) {
+    for (int u = static_cast<int>(low.x()); u < high.x(); ++u) {
+      const Eigen::Vector2d at(u + 0.5, v + 0.5);
+      const Eigen::Vector3d weights =
+          Eigen::Vector3d(area(b.px, c.px, at), area(c.px, a.px, at), area(a.px, b.px, at)) / whole;
+      if (weights.minCoeff() < 0) continue;
+      const Eigen::Vector3d depths(a.px.z(), b.px.z(), c.px.z());
+      const double depth =
+          orthographic ? weights.dot(depths) : 1 / weights.dot(depths.cwiseInverse());
+      if (static_cast<float>(depth) >= rendering.depth(v, u)) continue;
+      rendering.depth(v, u) = static_cast<float>(depth);
+      for (int i = 0; i < 3; ++i) {
+        const auto channel = static_cast<std::size_t>(i);
+        rendering.color(v, u)[i] = cv::saturate_cast<std::uint8_t>(
+            weights.dot(Eigen::Vector3d(a.color[channel], b.color[channel], c.color[channel])));
+      }
+    }
+  }
+}
+
 // Eye-dome lighting (Boucheny 2009): a pixel darkens by its distance behind its neighbours. This
 // shows the shape of points without normals. Steps are relative to the distance in perspective.
 cv::Mat1f dome_shade(const cv::Mat1f& depth, bool orthographic) {
@@ -70,6 +111,25 @@ cv::Mat1f dome_shade(const cv::Mat1f& depth, bool orthographic) {
   return shade;
 }
 
+Rendering nothing_drawn(const PointCloud& cloud, const View& view) {
+  STILLMAP_CHECK(cloud.colors.size() == cloud.size() && view.width_px > 0 && view.height_px > 0);
+  const Rgb& back = view.background;
+  return {cv::Mat3b(view.height_px, view.width_px, {back[0], back[1], back[2]}),
+          cv::Mat1f(view.height_px, view.width_px, kNothing)};
+}
+
+ColorImage finished(Rendering rendering, const View& view) {
+  if (view.shade_depth_steps) {
+    const cv::Mat1f shade = dome_shade(rendering.depth, view.orthographic);
+    std::transform(rendering.color.begin(),
+                   rendering.color.end(),
+                   shade.begin(),
+                   rendering.color.begin(),
+                   [](const cv::Vec3b& c, float s) { return cv::Vec3b(cv::Vec3f(c) * s); });
+  }
+  return ColorImage(rendering.color);
+}
+
 }  // namespace
 
 Eigen::Isometry3d look_at(const Eigen::Vector3d& eye,
@@ -92,24 +152,30 @@ std::optional<Eigen::Vector3d> project_point(const View& view, const Eigen::Vect
 }
 
 ColorImage render_points(const PointCloud& cloud, const View& view) {
-  STILLMAP_CHECK(cloud.colors.size() == cloud.size() && view.width_px > 0 && view.height_px > 0);
-  const Rgb& back = view.background;
-  Rendering rendering{cv::Mat3b(view.height_px, view.width_px, {back[0], back[1], back[2]}),
-                      cv::Mat1f(view.height_px, view.width_px, kNothing)};
+  Rendering rendering = nothing_drawn(cloud, view);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const std::optional<Eigen::Vector3d> px =
         project_point(view, cloud.positions[i].cast<double>());
     if (px) splat(rendering, *px, splat_side_px(view, px->z()), cloud.colors[i]);
   }
-  if (view.shade_depth_steps) {
-    const cv::Mat1f shade = dome_shade(rendering.depth, view.orthographic);
-    std::transform(rendering.color.begin(),
-                   rendering.color.end(),
-                   shade.begin(),
-                   rendering.color.begin(),
-                   [](const cv::Vec3b& c, float s) { return cv::Vec3b(cv::Vec3f(c) * s); });
+  return finished(std::move(rendering), view);
+}
+
+ColorImage render_triangles(const PointCloud& vertices, Triangles triangles, const View& view) {
+  Rendering rendering = nothing_drawn(vertices, view);
+  for (const std::array<std::uint32_t, 3>& triangle : triangles) {
+    std::array<Corner, 3> corners;
+    bool is_in_view = true;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const std::uint32_t vertex = triangle[i];
+      STILLMAP_CHECK(vertex < vertices.size());
+      const auto px = project_point(view, vertices.positions[vertex].cast<double>());
+      is_in_view = is_in_view && px;
+      corners[i] = {px.value_or(Eigen::Vector3d::Zero()), vertices.colors[vertex]};
+    }
+    if (is_in_view) fill(rendering, corners, view.orthographic);
   }
-  return ColorImage(rendering.color);
+  return finished(std::move(rendering), view);
 }
 
 std::vector<std::vector<Eigen::Vector3d>> continuous_parts(const Trajectory& poses) {

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include <Eigen/Geometry>
 
@@ -40,6 +43,16 @@ struct View {
 /// Renders the cloud: the nearest point wins, of equally near ones the first in the cloud. Needs no
 /// window and no graphics hardware.
 [[nodiscard]] ColorImage render_points(const PointCloud& cloud, const View& view);
+
+/// Indices of the points that are the corners of triangles.
+using Triangles = std::span<const std::array<std::uint32_t, 3>>;
+
+/// Renders triangles between the vertices, in the colours of their corners; their size in pixels
+/// should be small. The nearest wins. Triangles with a corner nearer than the view's limit are not
+/// drawn.
+[[nodiscard]] ColorImage render_triangles(const PointCloud& vertices,
+                                          Triangles triangles,
+                                          const View& view);
 
 /// The positions of the poses, cut at gaps of more than half a second.
 [[nodiscard]] std::vector<std::vector<Eigen::Vector3d>> continuous_parts(const Trajectory& poses);

@@ -163,5 +163,75 @@ TEST(ContinuousParts, AreCutAtGaps) {
   EXPECT_TRUE(continuous_parts({}).empty());
 }
 
+TEST(RenderTriangles, PixelsWhoseRaysMeetATriangle) {
+  // Corners anywhere before the camera; the truth by cutting the ray of each pixel's centre.
+  std::mt19937 random(5);
+  const auto uniform = [&](double low, double high) {
+    return low + (high - low) * static_cast<double>(random()) / 4294967296.0;
+  };
+  PointCloud vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  for (std::uint32_t i = 0; i < 8; ++i) {
+    const Rgb color = {static_cast<std::uint8_t>(20 * i), 100, 200};
+    for (int corner = 0; corner < 3; ++corner) {
+      const double z = uniform(1, 4);
+      vertices.positions.push_back(
+          Eigen::Vector3d(uniform(-0.8, 0.8) * z, uniform(-0.6, 0.6) * z, z).cast<float>());
+      vertices.colors.push_back(color);
+    }
+    triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  const ColorImage image = render_triangles(vertices, triangles, plain_view());
+  int filled = 0;
+  for (int v = 0; v < 60; ++v) {
+    for (int u = 0; u < 80; ++u) {
+      const Eigen::Vector3d ray((u + 0.5 - 40) / 50, (v + 0.5 - 30) / 50, 1);
+      double nearest = 1e9;
+      Rgb expected = {255, 255, 255};
+      for (const std::array<std::uint32_t, 3>& t : triangles) {
+        Eigen::Matrix3d corners;
+        for (int k = 0; k < 3; ++k) {
+          corners.col(k) = vertices.positions[t[static_cast<std::size_t>(k)]].cast<double>();
+        }
+        const Eigen::Vector3d weights = corners.inverse() * ray;  // of the corners, up to scale
+        const double z = 1 / weights.sum();
+        if (weights.minCoeff() * z < 0 || z <= 0 || z >= nearest) continue;
+        nearest = z;
+        expected = vertices.colors[t[0]];
+      }
+      filled += nearest < 1e9 ? 1 : 0;
+      EXPECT_EQ(pixel(image, u, v), expected) << u << " " << v;
+    }
+  }
+  EXPECT_GT(filled, 400);
+}
+
+TEST(RenderTriangles, ColorsGoOverFromCornerToCorner) {
+  PointCloud square;
+  square.positions = {{-0.5F, -0.5F, 1}, {0.5F, -0.5F, 1}, {0.5F, 0.5F, 1}, {-0.5F, 0.5F, 1}};
+  square.colors = {{0, 0, 0}, {200, 0, 0}, {200, 100, 0}, {0, 100, 0}};
+  const std::vector<std::array<std::uint32_t, 3>> triangles = {{0, 1, 2}, {0, 3, 2}};
+  View view = plain_view();
+  view.orthographic = true;  // 50 pixels in a metre: the square is 50 pixels wide
+  const ColorImage image = render_triangles(square, triangles, view);
+  for (const int x : {16, 30, 52, 63}) {
+    for (const int y : {6, 20, 53}) {
+      EXPECT_NEAR(pixel(image, x, y)[0], 200 * (x + 0.5 - 15) / 50, 0.5001);
+      EXPECT_NEAR(pixel(image, x, y)[1], 100 * (y + 0.5 - 5) / 50, 0.5001);
+    }
+  }
+  EXPECT_EQ(pixel(image, 14, 20), (Rgb{255, 255, 255}));
+  EXPECT_EQ(pixel(image, 65, 20), (Rgb{255, 255, 255}));
+}
+
+TEST(RenderTriangles, ThoseBeforeTheLimitAreNotDrawn) {
+  PointCloud vertices;
+  vertices.positions = {{-1, -1, -1}, {1, -1, 2}, {0, 1, 2}};
+  vertices.colors = {kRed, kRed, kRed};
+  const std::vector<std::array<std::uint32_t, 3>> triangles = {{0, 1, 2}};
+  const ColorImage image = render_triangles(vertices, triangles, plain_view());
+  for (const cv::Vec3b& color : image.mat) EXPECT_EQ(color, cv::Vec3b(255, 255, 255));
+}
+
 }  // namespace
 }  // namespace stillmap

@@ -101,22 +101,20 @@ PointCloud cut_open(const PointCloud& map, const SceneFrame& scene) {
     if (scene.R_level_world.row(1).dot(p) < highest) continue;
     cut.positions.push_back(map.positions[i]);
     cut.colors.push_back(map.colors[i]);
+    if (!map.normals.empty()) cut.normals.push_back(map.normals[i]);
   }
   return cut;
 }
 
-ColorImage render_smooth(const PointCloud& cloud, const View& view) {
+ColorImage render_smooth(const PointCloud& cloud, const View& view, Triangles triangles) {
   View large = view;
   large.width_px *= 2;
   large.height_px *= 2;
   large.scale *= 2;
+  const ColorImage drawn =
+      triangles.empty() ? render_points(cloud, large) : render_triangles(cloud, triangles, large);
   ColorImage picture;
-  cv::resize(render_points(cloud, large).mat,
-             picture.mat,
-             {view.width_px, view.height_px},
-             0,
-             0,
-             cv::INTER_AREA);
+  cv::resize(drawn.mat, picture.mat, {view.width_px, view.height_px}, 0, 0, cv::INTER_AREA);
   return picture;
 }
 

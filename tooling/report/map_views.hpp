@@ -17,7 +17,7 @@ namespace stillmap {
 enum class MapSide { kFront, kLeft, kTop };
 
 /// The map without the points above the cameras (without cameras: more than 1.9 m above the lowest
-/// point), and without strays far outside the scene.
+/// point), and without strays far outside the scene. Labels are left out.
 [[nodiscard]] PointCloud cut_open(const PointCloud& map, const SceneFrame& scene);
 
 struct ViewSize {
@@ -31,8 +31,11 @@ struct ViewSize {
                              const PointCloud& map,
                              const ViewSize& size);
 
-/// As render_points(), but rendered at twice the size and reduced, so that edges are smooth.
-[[nodiscard]] ColorImage render_smooth(const PointCloud& cloud, const View& view);
+/// As render_points(), or render_triangles() where there are triangles, but rendered at twice the
+/// size and reduced, so that edges are smooth.
+[[nodiscard]] ColorImage render_smooth(const PointCloud& cloud,
+                                       const View& view,
+                                       Triangles triangles = {});
 
 /// A picture with its name.
 struct CaptionedPicture {

@@ -27,7 +27,7 @@ Features moved(Features features) {
 TEST(Tracker, UsesDoubtedFeaturesWhereTheOthersAreTooFew) {
   constexpr std::size_t kEvery = 50;  // leaves less than min_inliers
   for (const bool may : {true, false}) {
-    Walk walk(path, {});
+    SimulatedWalk walk(path, {});
     int tracked = 0;
     for (int k = 1; k <= 30; ++k) {
       const Features seen = walk.observe(k, kNoise).features;
@@ -52,7 +52,7 @@ TEST(Tracker, TakesNoPoseThatTheTrustedFeaturesContradict) {
   for (const double confirmed_share : {TrackerConfig{}.confirmed_share, 0.0}) {
     TrackerConfig config = {};
     config.confirmed_share = confirmed_share;
-    Walk walk(path, config);
+    SimulatedWalk walk(path, config);
     double worst_m = 0;
     for (int k = 1; k <= 30; ++k) {
       const Features seen = walk.observe(k, kNoise).features;
@@ -75,7 +75,7 @@ TEST(Tracker, TakesNoPoseThatTheTrustedFeaturesContradict) {
 // are right, as on what it mistook for people.
 TEST(Tracker, FewTrustedFeaturesYieldToManyInWhichThereIsTrust) {
   constexpr std::size_t kEvery = 25;  // leaves less than min_inliers, but enough to begin with
-  Walk walk(path, {});
+  SimulatedWalk walk(path, {});
   for (int k = 1; k <= 30; ++k) {
     const Features seen = walk.observe(k, kNoise).features;
     const MoreFeatures more = [&](const Features& own) -> std::optional<Features> {

@@ -11,7 +11,7 @@ namespace stillmap {
 namespace {
 
 TEST(Tracker, FollowsASmoothPathAsWellAsTheNoiseAllows) {
-  Walk walk(path, {});
+  SimulatedWalk walk(path, {});
   EXPECT_EQ(walk.first().status, TrackingStatus::kInitialized);
   double normalized = 0;
   constexpr int kFrames = 150;
@@ -35,7 +35,7 @@ TEST(Tracker, FollowsASmoothPathAsWellAsTheNoiseAllows) {
 }
 
 TEST(Tracker, ExpectsTheLandmarksThatItFindsAndReadsTheMapOnly) {
-  Walk walk(path, {});
+  SimulatedWalk walk(path, {});
   const TrackedFrame frame = walk.track(1, walk.observe(1, kNoise).features);
   const std::set<LandmarkId> expected(frame.expected.begin(), frame.expected.end());
   EXPECT_EQ(expected.size(), frame.expected.size());
@@ -50,7 +50,7 @@ TEST(Tracker, ExpectsTheLandmarksThatItFindsAndReadsTheMapOnly) {
 }
 
 TEST(Tracker, StandsFortyPercentOfWrongDescriptors) {
-  Walk walk(path, {});
+  SimulatedWalk walk(path, {});
   ObservationNoise noise = kNoise;
   noise.wrong_descriptor_share = 0.4;
   double normalized = 0;
@@ -87,7 +87,7 @@ TEST(Tracker, FollowsAPatternWhoseCornersLookAlike) {
 }
 
 TEST(Tracker, StandsThirtyPercentOfMatchesThatMoved) {
-  Walk walk(path, {});
+  SimulatedWalk walk(path, {});
   for (int k = 1; k <= 60; ++k) {
     Features features = walk.observe(k, kNoise).features;
     for (std::size_t i = 0; i < features.size(); ++i) {
@@ -102,7 +102,7 @@ TEST(Tracker, StandsThirtyPercentOfMatchesThatMoved) {
 }
 
 TEST(Tracker, IsMarkedLostWithoutFeaturesAndFindsBack) {
-  Walk walk(path, {});
+  SimulatedWalk walk(path, {});
   for (int k = 1; k <= 40; ++k) {
     const bool dark = k > 20 && k <= 30;
     const Observed seen = dark ? Observed{} : walk.observe(k, kNoise);
@@ -119,7 +119,7 @@ TEST(Tracker, IsMarkedLostWithoutFeaturesAndFindsBack) {
 }
 
 TEST(Tracker, FindsBackAtAnotherPlaceThanWhereItWasLost) {
-  Walk walk(path, {});
+  SimulatedWalk walk(path, {});
   for (int k = 1; k <= 5; ++k) (void)walk.track(k, walk.observe(k, kNoise).features);
   ASSERT_EQ(walk.track(6, {}).status, TrackingStatus::kLost);
   // Two seconds later, although the stamps do not say so: constant velocity does not lead there.
@@ -131,14 +131,15 @@ TEST(Tracker, FindsBackAtAnotherPlaceThanWhereItWasLost) {
 TEST(Tracker, MergedLandmarksAndDroppedKeyframesReachIt) {
   // The map changes between two frames: the reference is dropped, landmarks are merged, and the
   // whole world moves. Tracking goes on in the moved world.
-  SimulatedMap simulated(Walk::world());
+  SimulatedMap simulated(SimulatedWalk::world());
   std::mt19937 rng(2);
-  const Observed first = Walk::world().observe(path(0), {}, rng);
+  const Observed first = SimulatedWalk::world().observe(path(0), {}, rng);
   for (int copy = 0; copy < 2;
        ++copy) {  // two key frames at one place, with landmarks of their own
     const KeyframeId id = add_bare_keyframe(simulated, path(0), first);
     for (std::uint32_t i = 0; i < first.points.size(); ++i) {
-      simulated.map.add_landmark(Walk::world().points()[first.points[i]].position, {id, i});
+      simulated.map.add_landmark(SimulatedWalk::world().points()[first.points[i]].position,
+                                 {id, i});
     }
   }
   Tracker tracker = make_tracker();
@@ -159,7 +160,7 @@ TEST(Tracker, MergedLandmarksAndDroppedKeyframesReachIt) {
   }
   frame.id = FrameId(1);
   frame.stamp.seconds = kFrameInterval_s;
-  const Observed second = Walk::world().observe(path(kFrameInterval_s), {}, rng);
+  const Observed second = SimulatedWalk::world().observe(path(kFrameInterval_s), {}, rng);
   const TrackedFrame tracked = tracker.track(frame, second.features, simulated.map, PlaceIndex());
   ASSERT_EQ(tracked.status, TrackingStatus::kTracked);
   EXPECT_EQ(tracked.reference, KeyframeId(0));
@@ -196,12 +197,12 @@ Observed with_twins(const Observed& seen) {
 TEST(Tracker, UsesALandmarkOnceInAFrame) {
   // Two features of the last frame saw two landmarks, which have become one since.
   std::mt19937 rng(2);
-  const Observed seen = with_twins(Walk::world().observe(path(0), {}, rng));
-  SimulatedMap simulated(Walk::world());
+  const Observed seen = with_twins(SimulatedWalk::world().observe(path(0), {}, rng));
+  SimulatedMap simulated(SimulatedWalk::world());
   const KeyframeId id = add_bare_keyframe(simulated, path(0), seen);
   const auto count = static_cast<std::uint32_t>(seen.points.size());
   for (std::uint32_t i = 0; i < count; ++i) {
-    simulated.map.add_landmark(Walk::world().points()[seen.points[i]].position, {id, i});
+    simulated.map.add_landmark(SimulatedWalk::world().points()[seen.points[i]].position, {id, i});
   }
   Tracker tracker = make_tracker();
   RgbdFrame frame;
@@ -225,7 +226,7 @@ TEST(Tracker, UsesALandmarkOnceInAFrame) {
 // The error of the later half of 240 poses with a rolling shutter of 30 ms, for which the tracker
 // corrects features as for `assumed_s`.
 double rolling_rmse_m(double assumed_s) {
-  Walk walk(path, {}, 0.03);
+  SimulatedWalk walk(path, {}, 0.03);
   walk.assume({assumed_s, 0});
   double sum = 0;
   for (int k = 1; k <= 240; ++k) {
