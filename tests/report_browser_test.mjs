@@ -58,6 +58,13 @@ async function playsItsFrames(page) {
   await page.waitForFunction(() => Number(document.querySelector("[data-tool=scrubber]").value) > 5);
   await page.click("[data-tool=play]");
   assert.match(await page.textContent("[data-tool=time]"), /^\d+\.\d s$/);
+  const moving = [];
+  for (let frame = 0; frame < 40; ++frame) {
+    await scrubber.fill(String(frame));
+    moving.push(Number(await page.getAttribute("#map-view .scene", "data-moving")));
+  }
+  const playing = moving.filter((points) => points > 100).length;
+  assert.ok(playing > 30, `people walk in ${playing} of 40 frames: ${moving}`);
 }
 
 async function fitsAPhone(page) {
@@ -71,7 +78,7 @@ mkdirSync(folder, { recursive: true });
 const sequence = path.join(folder, "office"), out = path.join(folder, "out"), report = path.join(out, "report.html");
 execFileSync(program, ["synth", sequence, "--scene", "walking_xyz", "--frames", "40", "--size", "320x240",
                        "--detections", "imperfect"], { stdio: "ignore" });
-execFileSync(program, ["run", sequence, "--out", out, "--segmenter", `detections:${sequence}/detections`], { stdio: "ignore" });
+execFileSync(program, ["run", sequence, "--out", out, "--keep-movers", "--segmenter", `detections:${sequence}/detections`], { stdio: "ignore" });
 assert.ok(statSync(report).size < MOST_BYTES, `the report has ${statSync(report).size} bytes`);
 const browser = await launchBrowser();
 try {

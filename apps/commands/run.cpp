@@ -168,6 +168,10 @@ class KeptFrames {
   [[nodiscard]] std::optional<std::string> movers_ply(const Trajectory& final_poses) const {
     return movers_ ? std::optional(movers_->ply(final_poses)) : std::nullopt;
   }
+  [[nodiscard]] std::vector<StampedGhosts> movers_for_report() const {
+    constexpr std::size_t kMostPoints = 100'000;  // 1.3 MB of the report
+    return movers_ ? movers_->ghosts(kMostPoints) : std::vector<StampedGhosts>();
+  }
 
  private:
   std::optional<ObjectFolder> objects_;
@@ -186,6 +190,19 @@ SequenceRun run_and_keep(RunInput& input,
     print_output(input.finish_recording());
     throw;
   }
+}
+
+// What the run itself does not know.
+void complete(RunReport& report,
+              const RunInput& input,
+              std::string config_yaml,
+              const KeptFrames& kept) {
+  report.version = kVersion;
+  report.sequence = input.name();
+  report.config_yaml = std::move(config_yaml);
+  report.movers = kept.movers_for_report();
+  report.groundtruth = input.true_poses();
+  evaluate(report);
 }
 
 int run(const RunArguments& arguments) {
@@ -226,11 +243,7 @@ int run(const RunArguments& arguments) {
     report.warnings.push_back(interruption);
     progress.on_warning(interruption);
   }
-  report.version = kVersion;
-  report.sequence = input.name();
-  report.config_yaml = dump_yaml(list_fields(config));
-  report.groundtruth = input.true_poses();
-  evaluate(report);
+  complete(report, input, dump_yaml(list_fields(config)), kept);
   choose_map(run, arguments.poses == "truth");
   if (input.truth()) evaluate_maps(run, *input.truth());
   const std::optional<std::string> live_lines =
@@ -306,7 +319,7 @@ void add_settings(CLI::App& command, RunArguments& arguments) {
                      "key frames saw behind it: a sequence");
   command.add_flag("--keep-movers",
                    arguments.keep_movers,
-                   "write movers.ply: the points of all that moved, each with its stamp and track");
+                   "write movers.ply: what moved, with stamp and track; the report plays it");
   command.add_option("--dynamics",
                      arguments.dynamics,
                      fmt::format("what is done about what moves: {}; as dynamics.mode",

@@ -60,7 +60,10 @@ void MovingPoints::on_frame(const RgbdFrame& frame, const FrameResult& result) {
       if (!object.dynamic) continue;
       const cv::Vec2f& ray = rays_(v, u);
       const cv::Vec3b& rgb = frame.color.mat(v, u);
-      kept.points.push_back({{ray[0] * z, ray[1] * z, z}, {rgb[0], rgb[1], rgb[2]}, object.track});
+      kept.points.push_back({{ray[0] * z, ray[1] * z, z},
+                             {rgb[0], rgb[1], rgb[2]},
+                             object.track,
+                             static_cast<std::uint8_t>(id - 1)});
     }
   }
   if (!kept.points.empty()) frames_.push_back(std::move(kept));
@@ -71,6 +74,24 @@ void MovingPoints::on_end(const RunResult& result) {
   for (Frame& frame : frames_) {
     for (Point& point : frame.points) point.track = lasting.of(point.track);
   }
+}
+
+std::vector<StampedGhosts> MovingPoints::ghosts(std::size_t most) const {
+  std::size_t points = 0;
+  for (const Frame& frame : frames_) points += frame.points.size();
+  std::vector<StampedGhosts> all;
+  std::size_t before = 0;
+  for (const Frame& frame : frames_) {
+    StampedGhosts kept{frame.stamp, {}};
+    for (const Point& point : frame.points) {
+      // One is taken where the share of `most` that is due reaches the next whole number.
+      const bool is_taken = points <= most || (before + 1) * most / points > before * most / points;
+      if (is_taken) kept.points.add(point.p_camera, point.color, point.place);
+      ++before;
+    }
+    all.push_back(std::move(kept));
+  }
+  return all;
 }
 
 std::string MovingPoints::ply(const Trajectory& final_poses) const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "stillmap/geometry/camera.hpp"
 #include "stillmap/perception/objects/frame_objects.hpp"
 #include "stillmap/system/observer.hpp"
+#include "tooling/browser/ghost_points.hpp"
 
 namespace stillmap {
 
@@ -31,11 +33,16 @@ class MovingPoints : public Observer {
   /// are left out.
   [[nodiscard]] std::string ply(const Trajectory& final_poses) const;
 
+  /// The points of every frame that has some, for the report; of more than `most` so many, evenly
+  /// spread.
+  [[nodiscard]] std::vector<StampedGhosts> ghosts(std::size_t most) const;
+
  private:
   struct Point {
     Eigen::Vector3f p_camera;
     Rgb color;
     TrackId track;
+    std::uint8_t place;  // of its object in the frame's list
   };
   struct Frame {
     Stamp stamp;

@@ -95,6 +95,16 @@ TEST(MovingPoints, AreThoseOfDynamicObjectsUnderFinalPoses) {
     EXPECT_GT(record.x, (second ? 10.0F : 0.0F) - 1.3F);
     EXPECT_EQ(cloud.positions[i].x(), record.x);
   }
+
+  const std::vector<StampedGhosts> all = movers.ghosts(1000);
+  ASSERT_EQ(all.size(), 3U);
+  EXPECT_EQ(all[1].stamp.text, "6.0");
+  EXPECT_EQ(all[1].points.size(), of_one);
+  EXPECT_EQ(all[1].points.positions[2], 32768 + 2000);
+  EXPECT_EQ(all[1].points.colors[3], 0);  // the first of the frame's objects
+  std::vector<std::size_t> few;
+  for (const StampedGhosts& ghosts : movers.ghosts(12)) few.push_back(ghosts.points.size());
+  EXPECT_EQ(few, (std::vector<std::size_t>{4, 4, 4}));
 }
 
 }  // namespace

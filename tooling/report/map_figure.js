@@ -49,7 +49,7 @@ function draw() {
   const { frames } = run.records;
   const show = (place) => {
     scrubber.setPlace(place);
-    run.show(place);
+    run.show(place, run.records.pictureAt(frames[place]));
     tool("time").textContent = `${(frames[place].t - frames[0].t).toFixed(1)} s`;
   };
   const scrubber = new Scrubber(tool("scrubber"), tool("play"), () => frames, show);

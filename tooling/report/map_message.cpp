@@ -4,8 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <span>
+#include <string_view>
 #include <vector>
+
+#include <fmt/core.h>
 
 #include "tooling/browser/message.hpp"
 #include "tooling/browser/scene_message.hpp"
@@ -27,6 +31,24 @@ std::vector<ViewedFrame> drawn_frames(const std::vector<ViewedFrame>& all) {
     if (!std::ranges::binary_search(telling, i)) frames[i].objects.clear();
   }
   return frames;
+}
+
+// Of the frames that tell their objects: number, positions, colours and count of what moves.
+std::string movers_json(Message& message,
+                        const std::vector<ViewedFrame>& frames,
+                        const std::vector<StampedGhosts>& movers) {
+  std::map<std::string_view, const GhostPoints*> ghosts_of;
+  for (const StampedGhosts& ghosts : movers) ghosts_of[ghosts.stamp.text] = &ghosts.points;
+  std::string list;
+  for (const std::size_t i : evenly_spread(frames.size(), kMostFramesWithObjects)) {
+    const auto found = ghosts_of.find(frames[i].stamp.text);
+    const GhostPoints none;
+    const GhostPoints& ghosts = found == ghosts_of.end() ? none : *found->second;
+    const auto [positions, colors, count] = attach_ghosts(message, ghosts);
+    list += fmt::format(
+        "{}[{},[{},{},{}]]", list.empty() ? "" : ",", frames[i].number, positions, colors, count);
+  }
+  return '[' + list + ']';
 }
 
 // The time between frames that tell their objects.
@@ -62,6 +84,9 @@ std::string map_message(const RunReport& report, const SceneFrame& scene, std::s
                           .step_s = step_s(frames)}));
   message.add("state", state_json(state, kMostKeyframes));
   message.add("frames", frames_json(frames, 0, frames.size()));
+  if (!report.movers.empty()) {
+    message.add("movers", movers_json(message, frames, report.movers));
+  }
   std::vector<std::size_t> sent;
   add_points(message, chunks, sent, chunks.size());
   const std::string bytes = message.bytes();

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
@@ -116,10 +117,42 @@ TEST(MapMessage, OfLongRunsEvenlySpreadFramesAndTheirObjects) {
   EXPECT_TRUE(message.head["state"]["finished"]);
 }
 
+TEST(MapMessage, HasWhatMovesInTheFramesThatTellIt) {
+  const PointCloud cloud = sheet(100);
+  RunReport report = report_of(cloud);
+  report.viewed.resize(3);
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    report.viewed[i].number = 10 + i;
+    report.viewed[i].stamp.text = fmt::format("{}.5", i);
+  }
+  StampedGhosts walker{report.viewed[1].stamp, {}};
+  walker.points.add({0.5F, -0.25F, 2.0F}, {7, 8, 9}, 4);
+  walker.points.add({-100, 0, 1000}, {1, 2, 3}, 0);  // too far for the message
+  report.movers = {walker, {{99.0, "99.0"}, walker.points}};
+  const Read message(map_message(report, scene_frame(cloud, {})));
+  const json& movers = message.head["movers"];
+  ASSERT_EQ(movers.size(), 3U);
+  EXPECT_EQ(movers[0][0], 10);
+  EXPECT_EQ(movers[0][1][2], 0);
+  EXPECT_EQ(movers[1][0], 11);
+  EXPECT_EQ(movers[1][1][2], 2);
+  std::vector<unsigned> positions, colors;
+  for (std::size_t i = 0; i < 6; ++i) {
+    const std::size_t at = movers[1][1][0].get<std::size_t>() + 2 * i;
+    positions.push_back(message.at(at) + 256 * message.at(at + 1));
+  }
+  for (std::size_t i = 0; i < 8; ++i) {
+    colors.push_back(message.at(movers[1][1][1].get<std::size_t>() + i));
+  }
+  EXPECT_THAT(positions, testing::ElementsAre(33268, 32518, 34768, 0, 32768, 65535));
+  EXPECT_THAT(colors, testing::ElementsAre(7, 8, 9, 4, 1, 2, 3, 0));
+}
+
 TEST(MapMessage, OfNothing) {
   const PointCloud cloud;
   const Read message(map_message(report_of(cloud), scene_frame(cloud, {})));
   EXPECT_FALSE(message.head.contains("points"));
+  EXPECT_FALSE(message.head.contains("movers"));
   EXPECT_TRUE(message.head["frames"].empty());
   EXPECT_FALSE(message.head["start"].contains("step"));
   EXPECT_FALSE(message.head["state"].contains("box"));

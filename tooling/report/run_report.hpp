@@ -15,6 +15,7 @@
 #include "stillmap/geometry/camera.hpp"
 #include "stillmap/sensor/frame_stream.hpp"
 #include "stillmap/system/results.hpp"
+#include "tooling/browser/ghost_points.hpp"
 #include "tooling/browser/viewed_frame.hpp"
 #include "tooling/eval/ate.hpp"
 #include "tooling/eval/map_quality.hpp"
@@ -97,6 +98,7 @@ struct RunReport {
 
   std::vector<ReportSample> samples;  ///< about eight, in order
   std::vector<ViewedFrame> viewed;    ///< frames as the map's view shows them, in order
+  std::vector<StampedGhosts> movers;  ///< what moved in frames, if it was kept; in order
   const PointCloud* map = nullptr;  ///< not owned, outlives the report; nullptr when none was made
   bool map_at_true_poses = false;   ///< made with the poses of ground truth, not the estimate's
   std::optional<MapQuality> map_quality;             ///< of `map`

@@ -89,14 +89,10 @@ GhostPoints ghost_points(const ViewedSample& sample, const PixelGrid& grid) {
     if (id == 0 || id > result.objects.size() || !result.objects[id - 1].dynamic) continue;
     const float depth_m = frame.depth.mat(pixel.row, pixel.column);
     if (!(depth_m > 0)) continue;
-    const std::array<float, 3> p = {pixel.x * depth_m, pixel.y * depth_m, depth_m};
-    for (const float metres : p) {
-      const float millimetres = std::clamp(metres * 1000 + 32768, 0.0F, 65535.0F);
-      ghosts.positions.push_back(static_cast<std::uint16_t>(millimetres));
-    }
     const cv::Vec3b& color = frame.color.mat(pixel.row, pixel.column);
-    ghosts.colors.insert(ghosts.colors.end(),
-                         {color[0], color[1], color[2], static_cast<std::uint8_t>(id - 1)});
+    ghosts.add({pixel.x * depth_m, pixel.y * depth_m, depth_m},
+               {color[0], color[1], color[2]},
+               static_cast<std::uint8_t>(id - 1));
   }
   return ghosts;
 }

@@ -12,6 +12,7 @@
 #include "stillmap/core/rgbd_frame.hpp"
 #include "stillmap/geometry/camera.hpp"
 #include "stillmap/system/results.hpp"
+#include "tooling/browser/ghost_points.hpp"
 
 namespace stillmap {
 
@@ -54,13 +55,6 @@ class GrowingMap {
   std::unordered_set<std::uint64_t> seen_;  // voxels
 };
 
-/// What moves in a frame, as points.
-struct GhostPoints {
-  std::vector<std::uint16_t> positions;  ///< camera coordinates, millimetres + 32768
-  std::vector<std::uint8_t> colors;      ///< red, green, blue, place in FrameResult::objects
-
-  [[nodiscard]] std::size_t size() const { return colors.size() / 4; }
-};
 /// The points of dynamic objects on a grid of pixels.
 [[nodiscard]] GhostPoints ghost_points(const ViewedSample& sample, const PixelGrid& grid);
 

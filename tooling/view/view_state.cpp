@@ -178,9 +178,7 @@ void ViewState::add_picture(Message& message, PageProgress& progress) const {
       {"features", {message.attach(features), features.size() / 3}},
       {"masks", {message.attach(masks.runs), masks.runs.size(), masks.width_px, masks.height_px}}};
   if (has_pose(result) && ghost_grid_) {
-    const GhostPoints ghosts = ghost_points(*newest_, *ghost_grid_);
-    json["ghosts"] = {
-        message.attach(ghosts.positions), message.attach(ghosts.colors), ghosts.size()};
+    json["ghosts"] = attach_ghosts(message, ghost_points(*newest_, *ghost_grid_));
   }
   Json stages = Json::object();
   for (const StageTime& time : result.stages) {

@@ -16,6 +16,11 @@ export function colorOf(object) {
 // Whether an object is known to move: what has no such motion may have a velocity that is noise.
 export function isMoving(object) { return object.m.startsWith("mov"); }
 
+// The points of what moves, from where a message says that they are: positions, colours, count.
+export function ghostsOf([positionsAt, colorsAt, count], body) {
+  return { positions: new Uint16Array(body, positionsAt, 3 * count), colors: new Uint8Array(body, colorsAt, 4 * count) };
+}
+
 function nameSprite(text, color) {
   const canvas = document.createElement("canvas");
   const context = canvas.getContext("2d"), font = "600 30px system-ui, sans-serif";

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A run in three dimensions, from messages: what the viewer's page and the report have in common.
+import { ghostsOf } from "./objects.js";
 import { Records } from "./records.js";
 import { Scene } from "./scene.js";
 
@@ -39,6 +40,7 @@ export class RunScene {
       this.scene.path.clear();
     }
     if (head.frames) this.takeFrames(head.frames);
+    if (head.movers) this.takeMovers(head.movers, body);
     if (head.pointsAnew) this.scene.points.clear();
     if (head.points) this.scene.points.add(head.points, body, this.start.side);
     this.element.dataset.points = String(this.scene.points.size);
@@ -49,6 +51,11 @@ export class RunScene {
     this.records.add(frames);
     for (const frame of frames) this.scene.path.add(frame.p);
     if (frames.some((frame) => frame.k)) this.showKeyframes();
+  }
+
+  // What moved in frames, as a report has it: pictures that have nothing else.
+  takeMovers(movers, body) {
+    for (const [n, ghosts] of movers) this.records.addPicture({ n, ghosts: ghostsOf(ghosts, body) });
   }
 
   showKeyframes() {
@@ -65,6 +72,7 @@ export class RunScene {
     this.scene.path.showUpTo(place);
     this.scene.camera.setPose(near.p || frame.p);
     this.scene.objects.show(known, near, picture);
+    this.element.dataset.moving = String(this.scene.objects.hasGhost ? picture.ghosts.colors.length / 4 : 0);
     this.scene.changed();
     return known;
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The camera's image with masks, features and boxes.
 import { LabelPlaces } from "./labels.js";
-import { colorOf } from "./objects.js";
+import { colorOf, ghostsOf } from "./objects.js";
 
 const NAME_PX = 16, NAME_ROWS = 5;  // the height of a name on the page
 
@@ -18,11 +18,7 @@ export function readPicture(json, body) {
     features: new Uint16Array(body, featuresAt, 3 * features),
     masks: { width: maskWidth, height: maskHeight, runs: new Uint16Array(body, masksAt, runs) },
   };
-  if (json.ghosts) {
-    const [positionsAt, colorsAt, count] = json.ghosts;
-    picture.ghosts = { positions: new Uint16Array(body, positionsAt, 3 * count),
-                       colors: new Uint8Array(body, colorsAt, 4 * count) };
-  }
+  if (json.ghosts) picture.ghosts = ghostsOf(json.ghosts, body);
   return picture;
 }
 
