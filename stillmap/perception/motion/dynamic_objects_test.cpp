@@ -49,7 +49,7 @@ struct Office {
 
   [[nodiscard]] DynamicsResult judge(const DynamicsMode& mode,
                                      std::span<const TrackId> moving = {}) const {
-    return DynamicObjects({}, builtin_camera("tum_fr3"), mode).judge(depth, objects, {}, moving);
+    return DynamicObjects({}, builtin_camera("tum_fr3"), mode).judge(depth, objects, {}, {.moving = moving});
   }
 };
 
