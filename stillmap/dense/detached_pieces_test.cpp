@@ -15,7 +15,8 @@ struct Cubes {
   std::vector<Eigen::Vector3f> means;
   std::vector<Sightings> seen;
 
-  /// A patch of so many cubes along x and y whose first cube is at a place; returns its first index.
+  /// A patch of so many cubes along x and y whose first cube is at a place; returns its first
+  /// index.
   std::size_t add(Eigen::Vector3i place, int width, int height, std::uint8_t moving) {
     for (int x = 0; x < width; ++x) {
       for (int y = 0; y < height; ++y) {

@@ -41,8 +41,8 @@ LabelImage label_image(const DepthImage& depth, const FrameDynamics& dynamics) {
   STILLMAP_CHECK(dynamics.judged.states.size() == objects.size());
   std::array<LabelRule, 256> rules{};
   for (std::size_t i = 0; i < objects.size() && i + 1 < rules.size(); ++i) {
-    rules[i + 1] = rule_for(
-        objects[i], dynamics.judged.states[i], dynamics.judged.mask.resting[i + 1]);
+    rules[i + 1] =
+        rule_for(objects[i], dynamics.judged.states[i], dynamics.judged.mask.resting[i + 1]);
   }
   cv::Mat1b labels(ids.size(), std::uint8_t{0});
   for (int row = 0; row < ids.rows; ++row) {

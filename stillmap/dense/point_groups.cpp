@@ -25,7 +25,9 @@ std::uint64_t spread_bits(std::uint64_t x) {
 std::uint64_t morton_key(const Eigen::Vector3f& p, double cells_per_m) {
   const Eigen::Vector3d scaled = p.cast<double>() * cells_per_m;
   if (!(scaled.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() < kFarthestCells)) return kNowhere;
-  const auto axis = [](double v) { return spread_bits(static_cast<std::uint64_t>(v + kFarthestCells)); };
+  const auto axis = [](double v) {
+    return spread_bits(static_cast<std::uint64_t>(v + kFarthestCells));
+  };
   return axis(scaled.x()) | axis(scaled.y()) << 1U | axis(scaled.z()) << 2U;
 }
 

@@ -49,7 +49,8 @@ struct Office {
 
   [[nodiscard]] DynamicsResult judge(const DynamicsMode& mode,
                                      std::span<const TrackId> moving = {}) const {
-    return DynamicObjects({}, builtin_camera("tum_fr3"), mode).judge(depth, objects, {}, {.moving = moving});
+    return DynamicObjects({}, builtin_camera("tum_fr3"), mode)
+        .judge(depth, objects, {}, {.moving = moving});
   }
 };
 
