@@ -63,6 +63,12 @@ struct FreeSpaceConfig {
                     "",
                     0,
                     1000});
+    doubt_fields(self, visit);
+  }
+
+ private:
+  template <class Self, class Visitor>
+  static void doubt_fields(Self& self, Visitor& visit) {
     visit("weakly_seen",
           self.weakly_seen,
           FieldInfo{"number of views up to which a point is removed when all that see it see "
