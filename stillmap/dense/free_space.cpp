@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "stillmap/core/error.hpp"
+#include "stillmap/dense/detached_pieces.hpp"
 #include "stillmap/dense/point_batches.hpp"
 #include "stillmap/dense/point_groups.hpp"
 #include "stillmap/dense/selected_points.hpp"
@@ -179,8 +180,10 @@ PointCloud without_moved(const PointCloud& map,
                          std::size_t threads) {
   const PointGroups groups = group_points(map.positions, config.cell_m);
   const std::vector<Sightings> seen = sightings(groups.means, ranges, camera, config, threads);
-  return selected_points(map,
-                         [&](std::size_t i) { return stays(seen[groups.group_of[i]], config); });
+  std::vector<bool> kept(seen.size());
+  for (std::size_t k = 0; k < seen.size(); ++k) kept[k] = stays(seen[k], config);
+  kept = without_detached_pieces(groups.means, seen, std::move(kept), config);
+  return selected_points(map, [&](std::size_t i) { return kept[groups.group_of[i]]; });
 }
 
 }  // namespace stillmap

@@ -26,6 +26,8 @@ struct FreeSpaceConfig {
   int weakly_seen = 4;
   double beside_share = 0.125;
   double beside_m = 0.3;
+  double detached_m = 0.2;
+  double max_detached_share = 1.0;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -61,6 +63,12 @@ struct FreeSpaceConfig {
                     "",
                     0,
                     1000});
+    doubt_fields(self, visit);
+  }
+
+ private:
+  template <class Self, class Visitor>
+  static void doubt_fields(Self& self, Visitor& visit) {
     visit("weakly_seen",
           self.weakly_seen,
           FieldInfo{"number of views up to which a point is removed when all that see it see "
@@ -78,6 +86,19 @@ struct FreeSpaceConfig {
     visit("beside_m",
           self.beside_m,
           FieldInfo{"greatest distance of that motion in depth", "m", 0, 10});
+    visit("detached_m",
+          self.detached_m,
+          FieldInfo{"extent up to which a piece of the map that touches nothing else is removed "
+                    "when motion is measured at it, or when it is a single cube; 0: none is",
+                    "m",
+                    0,
+                    10});
+    visit("max_detached_share",
+          self.max_detached_share,
+          FieldInfo{"greatest ratio of views that see motion at such a piece to views that see it",
+                    "",
+                    0,
+                    1000});
   }
 };
 
@@ -110,7 +131,8 @@ struct Sightings {
 [[nodiscard]] bool stays(const Sightings& s, const FreeSpaceConfig& config);
 
 /// The map without the points that sightings remove: those of moved objects. All points of a cube
-/// of edge `cell_m` share the decision for their mean. The same with any number of threads.
+/// of edge `cell_m` share the decision for their mean. Small pieces that hang in the air then go
+/// by without_detached_pieces(). The same with any number of threads.
 [[nodiscard]] PointCloud without_moved(const PointCloud& map,
                                        std::span<const PosedRange> ranges,
                                        const CameraModel& camera,

@@ -17,10 +17,10 @@ struct LabelRule {
   DepthInterval depths;
 };
 
-LabelRule rule_for(const TrackedObject& object, const ObjectState& state) {
+LabelRule rule_for(const TrackedObject& object, const ObjectState& state, bool rests) {
   // A box used as a mask contains too much around its object.
   const bool known = object.mask_source != MaskSource::kBox && state.depths.has_value();
-  if (state.dynamic || !known) return {};
+  if ((state.dynamic && !rests) || !known) return {};
   return {class_label(object.detection.class_name), *state.depths};
 }
 
@@ -41,7 +41,8 @@ LabelImage label_image(const DepthImage& depth, const FrameDynamics& dynamics) {
   STILLMAP_CHECK(dynamics.judged.states.size() == objects.size());
   std::array<LabelRule, 256> rules{};
   for (std::size_t i = 0; i < objects.size() && i + 1 < rules.size(); ++i) {
-    rules[i + 1] = rule_for(objects[i], dynamics.judged.states[i]);
+    rules[i + 1] =
+        rule_for(objects[i], dynamics.judged.states[i], dynamics.judged.mask.resting[i + 1]);
   }
   cv::Mat1b labels(ids.size(), std::uint8_t{0});
   for (int row = 0; row < ids.rows; ++row) {

@@ -82,6 +82,15 @@ TEST(LabelImage, HasStaticThingsAndNeverAPerson) {
   EXPECT_EQ(cv::countNonZero(label_image(scene.depth, dynamics).mat != expected), 0);
 }
 
+TEST(LabelImage, HasAChairThatRestsThoughSomebodyIsAtIt) {
+  const Scene scene = scene_of({kPerson, kTouchedChair});
+  FrameDynamics dynamics = judged(scene);
+  dynamics.judged.mask.resting[2] = true;
+  cv::Mat1b expected(240, 320, std::uint8_t{0});
+  expected(kTouchedChair.area).setTo(kChair);
+  EXPECT_EQ(cv::countNonZero(label_image(scene.depth, dynamics).mat != expected), 0);
+}
+
 TEST(LabelImage, LeavesOutWhatAMaskHasOfTheWallAndOfNoDepth) {
   Scene scene = scene_of({kChairApart});
   const cv::Rect wall(240, 140, 5, 80), hole(260, 150, 4, 4);

@@ -10,7 +10,7 @@
 namespace stillmap {
 namespace {
 
-constexpr double kReach = 1 << 20;  // cells
+constexpr double kFarthestCells = 1 << 20;  // cells
 constexpr std::uint64_t kNowhere = std::numeric_limits<std::uint64_t>::max();
 
 /// Inserts two zero bits after each of the lowest 21 bits.
@@ -24,8 +24,10 @@ std::uint64_t spread_bits(std::uint64_t x) {
 
 std::uint64_t morton_key(const Eigen::Vector3f& p, double cells_per_m) {
   const Eigen::Vector3d scaled = p.cast<double>() * cells_per_m;
-  if (!(scaled.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() < kReach)) return kNowhere;
-  const auto axis = [](double v) { return spread_bits(static_cast<std::uint64_t>(v + kReach)); };
+  if (!(scaled.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() < kFarthestCells)) return kNowhere;
+  const auto axis = [](double v) {
+    return spread_bits(static_cast<std::uint64_t>(v + kFarthestCells));
+  };
   return axis(scaled.x()) | axis(scaled.y()) << 1U | axis(scaled.z()) << 2U;
 }
 

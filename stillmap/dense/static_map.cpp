@@ -73,7 +73,13 @@ DynamicRegions dynamic_regions(const DynamicMask& mask, const Mask& excluded) {
                    moving,
                    cv::MORPH_OPEN,
                    cv::getStructuringElement(cv::MORPH_RECT, cv::Size(side, side)));
-  cv::bitwise_or(moving, mask.extended.mat, moving);
+  for (int row = 0; row < moving.rows; ++row) {
+    const std::uint8_t* ids = mask.extended.mat[row];
+    std::uint8_t* target = moving[row];
+    for (int x = 0; x < moving.cols; ++x) {
+      if (ids[x] != 0 && !mask.resting[ids[x]]) target[x] = 255;
+    }
+  }
   return {excluded, Mask(moving)};
 }
 

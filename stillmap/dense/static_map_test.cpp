@@ -105,6 +105,19 @@ TEST(CloudStage, AViewLeavesOutWhatIsExcluded) {
   EXPECT_LT(10 * view.cloud.size() + 2 * view.range.cells.size(), 360000U);
 }
 
+TEST(CloudStage, WhatRestsDoesNotMove) {
+  FrameDynamics dynamics;
+  dynamics.judged.mask.extended = ObjectMask(cv::Mat1b(480, 640, std::uint8_t{0}));
+  dynamics.judged.mask.jumps = JumpImage(cv::Mat1b(480, 640, std::uint8_t{0}));
+  dynamics.judged.mask.extended.mat(cv::Rect(10, 10, 50, 50)).setTo(1);
+  dynamics.judged.mask.extended.mat(cv::Rect(100, 10, 50, 50)).setTo(2);
+  dynamics.judged.mask.resting[2] = true;
+  dynamics.excluded = dynamics.judged.mask.moving();
+  const DynamicRegions masks = dynamic_regions(dynamics.judged.mask, dynamics.excluded);
+  EXPECT_TRUE(masks.moving.covers(30, 30) && masks.excluded.covers(30, 30));
+  EXPECT_FALSE(masks.moving.covers(30, 120) || masks.excluded.covers(30, 120));
+}
+
 TEST(CloudStage, SmallJumpsAreUnclearLargeOnesMove) {
   FrameDynamics dynamics;
   dynamics.judged.mask.extended = ObjectMask(cv::Mat1b(480, 640, std::uint8_t{0}));

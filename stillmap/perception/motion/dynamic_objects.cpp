@@ -58,13 +58,13 @@ Mask DynamicMask::all() const {
   return Mask(both);
 }
 
-Mask DynamicMask::all_without(const std::array<bool, 256>& left_out) const {
+Mask DynamicMask::moving() const {
   cv::Mat1b pixels(extended.mat.size());
   for (int row = 0; row < pixels.rows; ++row) {
     const std::uint8_t *ids = extended.mat[row], *jump = jumps.mat[row];
     std::uint8_t* target = pixels[row];
     for (int x = 0; x < pixels.cols; ++x) {
-      const bool moves = ids[x] != 0 && !left_out[ids[x]];
+      const bool moves = ids[x] != 0 && !resting[ids[x]];
       target[x] = moves || jump[x] != 0 ? 255 : 0;
     }
   }
@@ -100,10 +100,11 @@ DynamicsResult DynamicObjects::judge(const DepthImage& depth,
                                      const FrameObjects& objects,
                                      const MeasuredObjects& measured,
                                      std::span<const PreviousDepth> previous,
-                                     std::span<const TrackId> moving) const {
+                                     const KnownMotions& motions) const {
   STILLMAP_CHECK(measured.depths.size() == objects.objects.size());
   DynamicsResult result;
-  result.states = judge_states(objects, measured.depths, moving);
+  result.states = judge_states(objects, measured.depths, motions.moving);
+  result.mask.resting = resting(result.states, motions.standing);
   result.mask.raw = dynamic_pixels(objects, measured.areas, result.states, depth.mat.size());
   HalfDepth expected, known_static;
   if (mode_.jumps == JumpRule::kWarpedFrames && !previous.empty()) {
@@ -117,7 +118,7 @@ DynamicsResult DynamicObjects::judge(const DepthImage& depth,
   }
   result.mask.extended = mode_.extension == ExtensionRule::kNone || !config_.extension.enabled
                              ? result.mask.raw
-                             : extended_mask(depth, objects, measured, result.states, known_static);
+                             : extended_mask(depth, objects, measured, result, known_static);
   result.mask.jumps = jumps(depth, previous, expected);
   return result;
 }
@@ -153,6 +154,18 @@ std::vector<ObjectState> DynamicObjects::judge_states(const FrameObjects& object
   return states;
 }
 
+// People sway, however long they have been where they are.
+std::array<bool, 256> DynamicObjects::resting(const std::vector<ObjectState>& states,
+                                              std::span<const TrackId> standing) const {
+  std::array<bool, 256> rests{};
+  if (!mode_.doubts) return rests;
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    rests[i + 1] = states[i].category != Category::kDynamic &&
+                   std::ranges::find(standing, states[i].track) != standing.end();
+  }
+  return rests;
+}
+
 ObjectState DynamicObjects::state_by_class(const TrackedObject& object,
                                            const ObjectDepths& depths) const {
   ObjectState state;
@@ -173,11 +186,11 @@ ObjectState DynamicObjects::state_by_class(const TrackedObject& object,
 ObjectMask DynamicObjects::extended_mask(const DepthImage& depth,
                                          const FrameObjects& objects,
                                          const MeasuredObjects& measured,
-                                         const std::vector<ObjectState>& states,
+                                         const DynamicsResult& judged,
                                          const HalfDepth& known_static) const {
   ObjectMask extended(cv::Mat1b(depth.mat.size(), std::uint8_t{0}));
-  for (std::size_t i = 0; i < states.size(); ++i) {
-    if (!states[i].dynamic) continue;
+  for (std::size_t i = 0; i < judged.states.size(); ++i) {
+    if (!judged.states[i].dynamic) continue;
     const TrackedObject& object = objects.objects[i];
     const int id = object.detection.id;
     // Fan 2020 knows masks from the network alone: Eq. (5) takes the box of any other object.
@@ -185,9 +198,10 @@ ObjectMask DynamicObjects::extended_mask(const DepthImage& depth,
         mode_.extension == ExtensionRule::kBox && object.mask_source != MaskSource::kDetected;
     const MaskArea area = box_alone ? MaskArea{} : measured.areas[static_cast<std::size_t>(id)];
     const ObjectView view{depth, objects.mask, id, object.detection.box};
-    // A box used as mask cannot be extended: it already holds every pixel.
+    // A box used as mask cannot be extended: it already holds every pixel. What rests would take
+    // the limbs of the person at it that the network cut off.
     PixelPatch patch =
-        object.mask_source == MaskSource::kBox && !box_alone
+        (object.mask_source == MaskSource::kBox && !box_alone) || judged.mask.resting[i + 1]
             ? mask_patch(view, area)
             : extend_mask(view, area, measured.depths[i], config_.extension, known_static);
     if (outgrows_its_class(object, patch, depth)) patch = mask_patch(view, area);

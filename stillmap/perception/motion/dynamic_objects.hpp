@@ -53,14 +53,17 @@ struct DynamicMask {
   ObjectMask raw;       ///< masks of dynamic objects from the network
   ObjectMask extended;  ///< the same masks after extension
   JumpImage jumps;      ///< pixels with a depth jump
+  /// By id: objects other than people that have stood still since they were first seen. Dynamic
+  /// only because somebody is at them, they are static for the pose and the map.
+  std::array<bool, 256> resting{};
 
   [[nodiscard]] bool covers(int row, int column) const {
     return extended.mat(row, column) != 0 || jumps.mat(row, column) != 0;
   }
   /// The union of extended masks and depth jumps.
   [[nodiscard]] Mask all() const;
-  /// The same without the masks of some objects; per id, from 1, not 0 for those left out.
-  [[nodiscard]] Mask all_without(const std::array<bool, 256>& left_out) const;
+  /// The same without the masks of the objects that rest.
+  [[nodiscard]] Mask moving() const;
 };
 
 struct DynamicsResult {
@@ -77,6 +80,12 @@ struct PreviousDepth {
   DepthImage depth;
   Eigen::Isometry3d T_current_previous = Eigen::Isometry3d::Identity();
   Mask dynamic = {};  ///< pixels of that frame that were not static
+};
+
+/// The tracks of objects whose motion is known.
+struct KnownMotions {
+  std::span<const TrackId> moving = {};    ///< move now
+  std::span<const TrackId> standing = {};  ///< have stood still since they were first seen
 };
 
 /// The measurements of a frame's objects that need no other frame.
@@ -99,20 +108,20 @@ class DynamicObjects {
 
   /// `measured` is the result of measure() for the same frame. `previous` are earlier frames, the
   /// best first; without any there are no depth jumps. JumpRule::kPreviousFrame needs one, without
-  /// its pose. `moving` are the tracks known to move; they are dynamic if the mode judges by
-  /// motion.
+  /// its pose. Objects that move are dynamic if the mode judges by motion; objects that rest
+  /// keep the network's mask.
   [[nodiscard]] DynamicsResult judge(const DepthImage& depth,
                                      const FrameObjects& objects,
                                      const MeasuredObjects& measured,
                                      std::span<const PreviousDepth> previous,
-                                     std::span<const TrackId> moving = {}) const;
+                                     const KnownMotions& motions = {}) const;
 
   /// measure() and judge() in one call.
   [[nodiscard]] DynamicsResult judge(const DepthImage& depth,
                                      const FrameObjects& objects,
                                      std::span<const PreviousDepth> previous,
-                                     std::span<const TrackId> moving = {}) const {
-    return judge(depth, objects, measure(depth, objects), previous, moving);
+                                     const KnownMotions& motions = {}) const {
+    return judge(depth, objects, measure(depth, objects), previous, motions);
   }
 
   [[nodiscard]] const CategoryTable& categories() const { return categories_; }
@@ -123,10 +132,12 @@ class DynamicObjects {
                                                       std::span<const TrackId> moving) const;
   [[nodiscard]] ObjectState state_by_class(const TrackedObject& object,
                                            const ObjectDepths& depths) const;
+  [[nodiscard]] std::array<bool, 256> resting(const std::vector<ObjectState>& states,
+                                              std::span<const TrackId> standing) const;
   [[nodiscard]] ObjectMask extended_mask(const DepthImage& depth,
                                          const FrameObjects& objects,
                                          const MeasuredObjects& measured,
-                                         const std::vector<ObjectState>& states,
+                                         const DynamicsResult& judged,
                                          const HalfDepth& known_static) const;
   [[nodiscard]] bool outgrows_its_class(const TrackedObject& object,
                                         const PixelPatch& patch,

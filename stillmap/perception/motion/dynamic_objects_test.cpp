@@ -49,7 +49,8 @@ struct Office {
 
   [[nodiscard]] DynamicsResult judge(const DynamicsMode& mode,
                                      std::span<const TrackId> moving = {}) const {
-    return DynamicObjects({}, builtin_camera("tum_fr3"), mode).judge(depth, objects, {}, moving);
+    return DynamicObjects({}, builtin_camera("tum_fr3"), mode)
+        .judge(depth, objects, {}, {.moving = moving});
   }
 };
 
@@ -130,6 +131,26 @@ TEST(DynamicObjects, MaskModeTakesPeopleAsTheNetworkHasThem) {
                                       StateReason::kStaticClass}));
   EXPECT_EQ(cv::countNonZero(result.mask.extended.mat != result.mask.raw.mat), 0);
   EXPECT_EQ(cv::countNonZero(result.mask.raw.mat), 100 * 350);
+}
+
+// The chair that the person touches.
+TEST(DynamicObjects, WhatRestsKeepsItsMaskAndDoesNotMove) {
+  Office office;
+  office.objects.mask.mat(cv::Rect(300, 250, 100, 20)).setTo(0);  // cut off by the network
+  const auto judge = [&](const char* mode, const std::vector<TrackId>& standing) {
+    return DynamicObjects({}, builtin_camera("tum_fr3"), dynamics_mode(mode))
+        .judge(office.depth, office.objects, {}, {.standing = standing});
+  };
+  const std::vector<TrackId> all{TrackId(1), TrackId(2)};  // people sway
+  const DynamicsResult moves = judge("full", {}), rests = judge("full", all);
+  EXPECT_TRUE(moves.states[1].dynamic && rests.states[1].dynamic);
+  EXPECT_EQ(moves.mask.extended.mat(265, 350), 2);
+  EXPECT_EQ(rests.mask.extended.mat(265, 350), 0) << "may be the person's";
+  EXPECT_TRUE(moves.mask.moving().covers(320, 350));
+  EXPECT_FALSE(rests.mask.moving().covers(320, 350));
+  EXPECT_TRUE(rests.mask.all().covers(320, 350));
+  EXPECT_TRUE(rests.mask.moving().covers(200, 250)) << "the person";
+  EXPECT_TRUE(judge("paper", all).mask.moving().covers(320, 350));
 }
 
 TEST(DynamicObjects, WhatHasBeenSeenToMoveIsDynamicInFullAlone) {

@@ -134,7 +134,6 @@ class JudgingStage final : public DynamicsStage {
       const std::optional<Eigen::Isometry3d>& T_odometry_camera) const;
   [[nodiscard]] std::vector<PointView> nearest_views(
       const Eigen::Isometry3d& T_odometry_camera) const;
-  [[nodiscard]] Mask excluded_from_pose(const FrameDynamics& dynamics) const;
   [[nodiscard]] std::vector<float> trust_in(const FrameObjects& objects,
                                             const std::vector<ObjectState>& states) const;
   [[nodiscard]] const PastView* past_view(std::int64_t frames_ago) const;
@@ -208,8 +207,9 @@ FrameDynamics JudgingStage::judge(
     const MeasuredObjects& measured,
     const std::optional<Eigen::Isometry3d>& T_odometry_camera_expected) {
   FrameDynamics dynamics;
+  const std::vector<TrackId> moving = motions_.moving(), standing = motions_.standing();
   dynamics.judged = objects_.judge(
-      frame.depth, objects, measured, previous(T_odometry_camera_expected), motions_.moving());
+      frame.depth, objects, measured, previous(T_odometry_camera_expected), {moving, standing});
   IdentifiedObjects identified = identities_.identify(
       frame, objects, measured.areas, measured.depths, T_odometry_camera_expected);
   identify_states(dynamics.judged.states, objects, identified.tracks);
@@ -222,26 +222,14 @@ FrameDynamics JudgingStage::judge(
   }
   const DynamicMask& mask = dynamics.judged.mask;
   if (masks_ == MaskRule::kWidened) {
-    dynamics.excluded = widened(mask.all(), config_.feature_margin_px);
-    dynamics.excluded_from_pose = excluded_from_pose(dynamics);
+    dynamics.excluded = widened(mask.moving(), config_.feature_margin_px);
+    dynamics.excluded_from_pose = dynamics.excluded;
   } else {
     dynamics.excluded = mask.all();
     dynamics.excluded_from_pose = Mask(mask.extended.mat);
   }
   if (masks_ != MaskRule::kSearched) dynamics.unsearched = dynamics.excluded_from_pose;
   return dynamics;
-}
-
-// The dense map leaves out objects that have stood still since first seen, the pose does not.
-Mask JudgingStage::excluded_from_pose(const FrameDynamics& dynamics) const {
-  if (!doubts_) return dynamics.excluded;
-  const std::vector<ObjectState>& states = dynamics.judged.states;
-  std::array<bool, 256> resting = objects_among(dynamics.objects, motions_.standing());
-  for (std::size_t i = 0; i < states.size(); ++i) {
-    resting[i + 1] = resting[i + 1] && states[i].category != Category::kDynamic;
-  }
-  if (std::ranges::find(resting, true) == resting.end()) return dynamics.excluded;
-  return widened(dynamics.judged.mask.all_without(resting), config_.feature_margin_px);
 }
 
 // The score of a network tells how surely it knows the class, not whether the object moves. Objects

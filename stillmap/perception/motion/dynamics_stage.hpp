@@ -78,11 +78,10 @@ struct FrameDynamics {
   FrameObjects objects;   ///< with the tracks of the ObjectTracker
   DynamicsResult judged;  ///< `judged.states` in the order of the objects, with lasting tracks
   std::vector<MoverSighting> movers;  ///< people, and what else moves by itself
-  /// Pixels that are not static surface for the map: `judged.mask` and, by MaskRule::kWidened, a
-  /// margin.
+  /// Pixels that are not static surface for the map: by MaskRule::kWidened `judged.mask` without
+  /// objects that have stood still since first seen, and a margin; else `judged.mask`.
   Mask excluded;
-  /// Pixels that no feature may have. By MaskRule::kWidened `excluded` without objects that have
-  /// stood still since first seen; else the extended masks.
+  /// Pixels that no feature may have. By MaskRule::kWidened `excluded`; else the extended masks.
   Mask excluded_from_pose;
   /// Pixels on which no feature is looked for: `excluded_from_pose`, or none if filter() drops the
   /// features on it.

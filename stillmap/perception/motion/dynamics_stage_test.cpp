@@ -95,7 +95,7 @@ TEST_F(DoubtedPerson, IsTrustedMoreWhenItHasStoodThereForLong) {
   EXPECT_TRUE(dynamics.excluded_from_pose.covers(60, 80));  // people sway
 }
 
-TEST_F(DoubtedPerson, AThingThatHasStoodThereIsStaticForThePoseNotForTheMap) {
+TEST_F(DoubtedPerson, AThingThatHasStoodThereIsStaticForThePoseAndTheMap) {
   DynamicsConfig config;
   config.objects.categories = {.dynamic = "dog", .potentially_dynamic = "person"};
   config.motion.standing_frames = 20;
@@ -111,8 +111,10 @@ TEST_F(DoubtedPerson, AThingThatHasStoodThereIsStaticForThePoseNotForTheMap) {
     (void)stage_->with_motion(frame, turned(0), dynamics);
     stage_->remember(frame, turned(0), dynamics);
     EXPECT_EQ(dynamics.excluded_from_pose.covers(60, 80), k < 4 + 20) << k;
+    EXPECT_EQ(dynamics.excluded.covers(60, 80), k < 4 + 20) << k;
+    EXPECT_EQ(dynamics.judged.mask.resting[1], k >= 4 + 20) << k;
+    EXPECT_FALSE(dynamics.judged.mask.resting[2]) << "dogs sway";
   }
-  EXPECT_TRUE(dynamics.excluded.covers(60, 80));
 }
 
 TEST(DynamicsStage, OtherModesDoubtNothing) {

@@ -315,7 +315,9 @@ IdentifiedObjects ObjectIdentities::identify(
     const KnownObject& object = known_[sighting.known];
     identified.tracks.push_back(object.track);
     if (!mobile(object)) continue;
-    const bool sure = objects.objects[i].detection.score >= kSureScore;
+    // A mask filled in where the network saw nobody may lie on who hides that person.
+    const TrackedObject& found = objects.objects[i];
+    const bool sure = !found.filled && found.detection.score >= kSureScore;
     if (!sure) sighting.look.surface.clear();
     identified.movers.push_back({object.track, std::move(sighting.look.surface)});
   }

@@ -75,7 +75,8 @@ struct KnownObject {
 /// What a frame shows of an object that moves by itself.
 struct MoverSighting {
   TrackId track;
-  /// A sample, in the odometry frame; empty where the network is hardly sure, or without depth.
+  /// A sample, in the odometry frame; empty where the network missed it or is hardly sure, or
+  /// without depth.
   std::vector<Eigen::Vector3d> surface;
 };
 

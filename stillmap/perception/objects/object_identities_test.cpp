@@ -30,6 +30,7 @@ struct Panel {
   Eigen::Vector3d p_world;
   double width_m = 0.4, height_m = 0.6;
   cv::Vec3b color = kRed;
+  std::optional<BoxOrigin> filled = {};
 };
 
 /// A room whose wall is 6 m away, in which panels are seen and identified.
@@ -63,7 +64,7 @@ class Room {
       frame.depth.mat(area) = static_cast<float>(p.z());
       objects.mask.mat(area) = id;
       objects.objects.push_back(
-          {{id, panel.class_name, 0.9F, box}, TrackId(panel.tracklet), std::nullopt});
+          {{id, panel.class_name, 0.9F, box}, TrackId(panel.tracklet), panel.filled});
     }
     const MaskAreas areas = mask_areas(objects.mask);
     std::vector<ObjectDepths> depths;
@@ -75,10 +76,10 @@ class Room {
     std::optional<Eigen::Isometry3d> T_odometry_camera;
     if (has_pose) T_odometry_camera = Eigen::Translation3d(camera_x_m, 0, 0);
     std::vector<std::uint32_t> tracks;
-    for (const TrackId track :
-         identities_.identify(frame, objects, areas, depths, T_odometry_camera).tracks) {
-      tracks.push_back(track.value);
-    }
+    IdentifiedObjects identified =
+        identities_.identify(frame, objects, areas, depths, T_odometry_camera);
+    for (const TrackId track : identified.tracks) tracks.push_back(track.value);
+    movers_ = std::move(identified.movers);
     return tracks;
   }
 
@@ -87,8 +88,11 @@ class Room {
     identities_.place(T_odometry_world, now_s);
   }
   [[nodiscard]] const ObjectIdentities& identities() const { return identities_; }
+  /// Of the last frame.
+  [[nodiscard]] const std::vector<MoverSighting>& movers() const { return movers_; }
 
  private:
+  std::vector<MoverSighting> movers_;
   CameraModel camera_ = small_camera();
   ObjectIdentities identities_;
 };
@@ -129,6 +133,18 @@ TEST(ObjectIdentities, PeopleAreFoundAgainByTheirColors) {
   const Tracks later = room.see(9, {person(2, -0.6, kBlue), person(3, 0.6, kRed)});
   EXPECT_EQ(later, (Tracks{first.at(1), first.at(0)}));
   EXPECT_NE(room.see(20, {person(4, 0, kGreen)}).at(0), first.at(0));
+}
+
+TEST(ObjectIdentities, AMaskFilledInTellsNoPlaceOfAPerson) {
+  Room room;
+  Panel panel = person(1, 0, kRed);
+  room.see(0, {panel});
+  ASSERT_EQ(room.movers().size(), 1U);
+  EXPECT_FALSE(room.movers()[0].surface.empty());
+  panel.filled = BoxOrigin{FrameId(0), std::nullopt};
+  room.see(0.03, {panel});
+  ASSERT_EQ(room.movers().size(), 1U) << "the person is in the frame";
+  EXPECT_TRUE(room.movers()[0].surface.empty()) << "but perhaps behind what is seen there";
 }
 
 TEST(ObjectIdentities, APersonIsFoundAgainOnlyWithinTheDistanceWalked) {
