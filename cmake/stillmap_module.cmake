@@ -65,9 +65,11 @@ function(stillmap_discover_tests NAME)
   list(JOIN stillmap_slow_tests_${NAME} "," slow)
   list(JOIN stillmap_lone_tests "|" lone)
   list(JOIN stillmap_unsanitized_tests "|" disabled)
+  list(JOIN stillmap_whole_stack_tests "|" whole_stacks)
   add_custom_command(TARGET ${NAME}_test POST_BUILD
     COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:${NAME}_test> -DNAME=${NAME} "-DLONE=${lone}" "-DSLOW=${slow}"
-      "-DDISABLED=${disabled}" -DTIMEOUT=${stillmap_test_timeout_s} -DOUT=${list} -P ${PROJECT_SOURCE_DIR}/cmake/discover_tests.cmake
+      "-DDISABLED=${disabled}" "-DWHOLE_STACKS=${whole_stacks}" -DTIMEOUT=${stillmap_test_timeout_s} -DOUT=${list}
+      -P ${PROJECT_SOURCE_DIR}/cmake/discover_tests.cmake
     VERBATIM)
   file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/${NAME}_test_include.cmake
     "if(EXISTS \"${list}\")\n  include(\"${list}\")\nelse()\n  add_test(${NAME}_test_NOT_BUILT ${NAME}_test_NOT_BUILT)\nendif()\n")

@@ -44,6 +44,9 @@ set(stillmap_unsanitized_tests
   ^api_page$ ^workflow[.]                 # they test Doxygen's pages and scripts in Python
   _browser$)                              # they measure how soon a page shows what happens
 
+# Tests whose leaks tools/lsan.supp can only tell by whole stacks, which cost time: expressions for SUITE.TEST.
+set(stillmap_whole_stack_tests ^OpenNiDevice[.] OnADevice$)
+
 # A sanitized program needs some ten times as long.
 set(stillmap_test_timeout_s 600)
 if(STILLMAP_SANITIZE)
