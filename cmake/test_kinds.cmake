@@ -53,6 +53,7 @@ if(STILLMAP_SANITIZE)
   set(stillmap_test_timeout_s 3600)
 else()
   set(stillmap_unsanitized_tests "")
+  set(stillmap_whole_stack_tests "")
 endif()
 
 # For the tests of a folder that add_test added.
