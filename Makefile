@@ -114,8 +114,10 @@ fuzz: setup
 	@cmake --build --preset fuzz --parallel
 	@tools/fuzz build/fuzz/bin out/fuzz $(or $(MINUTES),5)
 
-# All tests under the address and undefined-behaviour sanitizers, then under the thread sanitizer.
+# The tests under the address and undefined-behaviour sanitizers, then under the thread sanitizer; those that
+# make no sense there are listed as disabled (cmake/test_kinds.cmake).
 sanitize: setup
+	@tools/setup clang libclang-rt-14-dev llvm
 	@for preset in asan tsan; do \
 	  cmake --preset $$preset >/dev/null && cmake --build --preset $$preset --parallel && \
 	  ctest --preset $$preset --parallel "$$(nproc)" --no-tests=error || exit 1; \

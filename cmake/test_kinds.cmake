@@ -35,3 +35,33 @@ set(stillmap_lone_tests
   ^OnnxNetworks[.] ^FetchedNetworks[.] ^FurniturePackage[.] ^ShowRun[.] ^ServerForPages[.] ^OpenNiDevice[.] OnADevice$
   ^Export[.].*ReadBy ^Export[.].*ReadAs ^ExportMesh[.]MeshesAreReadBy ADiskIsFull$ AFullDiskIsAnError$
   ^Surroundings[.]AnotherUserReadsWhatNobodyMayWrite$ ^Surroundings[.]LanguagesMakeNoDifference$)
+
+# Tests that make no sense under sanitizers, as expressions for CTest's names: with STILLMAP_SANITIZE CTest lists them as
+# disabled. The Python package is not built there at all (cmake/python.cmake), and with it its tests.
+set(stillmap_unsanitized_tests
+  ^faults[.]faults$                       # its library replaces the calls that the sanitizers replace, too
+  ^install_consumer$ ^configure_parts$    # they configure and build projects of their own
+  ^api_page$ ^workflow[.]                 # they test Doxygen's pages and scripts in Python
+  _browser$)                              # they measure how soon a page shows what happens
+
+# Tests whose leaks tools/lsan.supp can only tell by whole stacks, which cost time: expressions for SUITE.TEST.
+set(stillmap_whole_stack_tests ^OpenNiDevice[.] OnADevice$)
+
+# A sanitized program needs some ten times as long.
+set(stillmap_test_timeout_s 600)
+if(STILLMAP_SANITIZE)
+  set(stillmap_test_timeout_s 3600)
+else()
+  set(stillmap_unsanitized_tests "")
+  set(stillmap_whole_stack_tests "")
+endif()
+
+# For the tests of a folder that add_test added.
+function(stillmap_disable_unsanitized_tests)
+  list(JOIN stillmap_unsanitized_tests "|" unsanitized)
+  get_property(tests DIRECTORY PROPERTY TESTS)
+  if(unsanitized)
+    list(FILTER tests INCLUDE REGEX "${unsanitized}")
+    set_tests_properties(${tests} PROPERTIES DISABLED TRUE)
+  endif()
+endfunction()

@@ -169,8 +169,7 @@ Net net_of(const Mesh& mesh) {
   }
   for (std::vector<std::uint32_t>& around : net.neighbours) {
     std::ranges::sort(around);
-    const auto doubles = std::ranges::unique(around);
-    around.erase(doubles.begin(), doubles.end());
+    around.erase(std::unique(around.begin(), around.end()), around.end());
   }
   return net;
 }

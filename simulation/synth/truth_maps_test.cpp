@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <ranges>
 
 #include <gtest/gtest.h>
 
@@ -122,8 +121,8 @@ TEST(TruthMaps, StaticSurfaceIsCoveredWhereItWasSeen) {
   const PointCloud cloud = maps_of_walk().static_map();
   for (const Eigen::Vector3f& place :
        {Eigen::Vector3f(-0.8F, -0.1F, 2.F), Eigen::Vector3f(0.F, 0.F, 2.F)}) {
-    const auto distance = [&](const Eigen::Vector3f& p) { return (p - place).norm(); };
-    EXPECT_LT(std::ranges::min(cloud.positions | std::views::transform(distance)), 0.02F);
+    const auto covers = [&](const Eigen::Vector3f& p) { return (p - place).norm() < 0.02F; };
+    EXPECT_TRUE(std::ranges::any_of(cloud.positions, covers));
   }
 }
 

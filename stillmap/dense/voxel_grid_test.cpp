@@ -126,7 +126,7 @@ TEST(VoxelGrid, AFullVoxelKeepsItsMean) {
 TEST(VoxelGrid, RefusesASizeThatIsNone) {
   EXPECT_THROW(VoxelGrid(0.0), InternalError);
   EXPECT_THROW(VoxelGrid(-1.0), InternalError);
-  EXPECT_THROW(VoxelGrid(std::numeric_limits<double>::quiet_NaN()), InternalError);
+  EXPECT_THROW(VoxelGrid{std::numeric_limits<double>::quiet_NaN()}, InternalError);
 }
 
 }  // namespace

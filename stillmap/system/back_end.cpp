@@ -2,7 +2,6 @@
 #include "stillmap/system/back_end.hpp"
 
 #include <algorithm>
-#include <ranges>
 #include <utility>
 
 #include "stillmap/core/error.hpp"
@@ -127,12 +126,12 @@ KeyframeId BackEnd::insert_keyframe(const RgbdFrame& frame,
 void BackEnd::smooth_velocity(const Keyframe& keyframe) {
   const double stamp_s = keyframe.stamp.seconds;
   std::vector<TimedMotion> motions;
-  for (const FrameRecord& frame : std::views::reverse(session_.frames)) {
-    const double after_s = frame.stamp.seconds - stamp_s;
+  for (auto frame = session_.frames.rbegin(); frame != session_.frames.rend(); ++frame) {
+    const double after_s = frame->stamp.seconds - stamp_s;
     if (after_s < -kAround_s) break;
     if (after_s > kAround_s) continue;
     motions.push_back(
-        {after_s, keyframe.T_world_camera.inverse() * T_world_frame(session_, frame)});
+        {after_s, keyframe.T_world_camera.inverse() * T_world_frame(session_, *frame)});
   }
   if (motions.size() < 2) return;
   FrameTiming timing = keyframe.timing;

@@ -10,6 +10,8 @@
 // Synthetic problems with known answers, for the tests and benchmarks of this module.
 namespace stillmap {
 
+/// Numbers are drawn into variables where the arguments of a call would draw them: their order is
+/// each compiler's own.
 class TestRandom {
  public:
   explicit TestRandom(std::uint32_t seed) : engine_(seed) {}
@@ -42,8 +44,8 @@ inline PointMeasurement measure_point(const CameraModel& camera,
                                       TestRandom& random) {
   const double sigma_px = random.uniform(0.7, 2.5);
   PointMeasurement m;
-  m.px = camera.project(p_camera) +
-         Eigen::Vector2d(random.normal(noise * sigma_px), random.normal(noise * sigma_px));
+  const double off_y = random.normal(noise * sigma_px), off_x = random.normal(noise * sigma_px);
+  m.px = camera.project(p_camera) + Eigen::Vector2d(off_x, off_y);
   m.pixel_weight = 1.0 / sigma_px;
   if (depths == Depths::kNone || (depths == Depths::kSome && random.uniform(0, 1) < 0.4)) return m;
   m.inverse_depth = 1.0 / p_camera.z() + random.normal(noise * kInverseDepthSigma);
@@ -62,7 +64,8 @@ inline PoseScene make_pose_scene(std::uint32_t seed, int count, Depths depths, d
   PoseScene scene{builtin_camera("tum_fr3"), Eigen::Isometry3d::Identity(), {}};
   scene.T_camera_world = perturb_left(scene.T_camera_world, random.twist(1.0, 0.7));
   for (int i = 0; i < count; ++i) {
-    const Eigen::Vector2d px(random.uniform(0, 640), random.uniform(0, 480));
+    const double y = random.uniform(0, 480), x = random.uniform(0, 640);
+    const Eigen::Vector2d px(x, y);
     const Eigen::Vector3d p_camera = scene.camera.unproject(px, random.uniform(0.8, 5.0));
     scene.observations.push_back({scene.T_camera_world.inverse() * p_camera,
                                   measure_point(scene.camera, p_camera, depths, noise, random)});
@@ -91,8 +94,8 @@ inline BundleProblem make_bundle(const BundleSceneSpec& spec) {
     problem.held.push_back(c < 2 ? 1 : 0);
   }
   while (std::ssize(problem.points) < spec.points) {
-    const Eigen::Vector3d p_world(
-        random.uniform(-1.5, 1.5), random.uniform(-1.2, 1.2), random.uniform(1.5, 4.5));
+    const double z = random.uniform(1.5, 4.5), y = random.uniform(-1.2, 1.2);
+    const Eigen::Vector3d p_world(random.uniform(-1.5, 1.5), y, z);
     const auto point = static_cast<std::uint32_t>(problem.points.size());
     std::vector<BundleObservation> seen_by;
     for (std::uint32_t c = 0; c < problem.T_camera_world.size(); ++c) {

@@ -55,7 +55,8 @@ void flip_bits(Descriptor& descriptor, int count, std::mt19937& rng) {
 Descriptor random_descriptor(std::mt19937& rng) {
   Descriptor descriptor{};
   for (std::uint64_t& word : descriptor) {
-    word = (static_cast<std::uint64_t>(rng()) << 32U) | rng();
+    word = static_cast<std::uint64_t>(rng()) << 32U;
+    word |= rng();
   }
   return descriptor;
 }
@@ -131,8 +132,8 @@ void SimulatedWorld::append(const Eigen::Vector3d& p_camera,
   if (!level || !near_image) return;
   const double sigma_px = noise.pixel_sigma_px * static_cast<double>(level_scales_[*level]);
   std::normal_distribution<double> normal;
-  const Eigen::Vector2d raw =
-      camera_.distort(ideal) + sigma_px * Eigen::Vector2d(normal(rng), normal(rng));
+  const double off_y = normal(rng), off_x = normal(rng);  // as arguments, in each compiler's order
+  const Eigen::Vector2d raw = camera_.distort(ideal) + sigma_px * Eigen::Vector2d(off_x, off_y);
   if (raw.x() < 0 || raw.x() >= camera_.width_px || raw.y() < 0 || raw.y() >= camera_.height_px) {
     return;
   }

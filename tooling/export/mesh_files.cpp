@@ -2,7 +2,6 @@
 #include "tooling/export/mesh_files.hpp"
 
 #include <cmath>
-#include <iterator>
 #include <map>
 
 #include <fmt/core.h>
@@ -163,26 +162,22 @@ std::string encode_mesh_obj(const SurfaceMesh& mesh) {
   check(mesh);
   const PointCloud& vertices = mesh.vertices;
   std::string text = "# stillmap: v x y z red green blue, metres\n";
-  const auto out = std::back_inserter(text);
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     const Eigen::Vector3f& p = vertices.positions[i];
     const Rgb& c = vertices.colors[i];
-    fmt::format_to(out, "v {:.4f} {:.4f} {:.4f} ", p.x(), p.y(), p.z());
-    fmt::format_to(out, "{:.4f} {:.4f} {:.4f}\n", c[0] / 255.0, c[1] / 255.0, c[2] / 255.0);
+    text += fmt::format("v {:.4f} {:.4f} {:.4f} ", p.x(), p.y(), p.z());
+    text += fmt::format("{:.4f} {:.4f} {:.4f}\n", c[0] / 255.0, c[1] / 255.0, c[2] / 255.0);
   }
   for (const Eigen::Vector3f& n : vertices.normals) {
-    fmt::format_to(out, "vn {:.3f} {:.3f} {:.3f}\n", n.x(), n.y(), n.z());
+    text += fmt::format("vn {:.3f} {:.3f} {:.3f}\n", n.x(), n.y(), n.z());
   }
   std::map<int, std::string> groups;
   for (const auto& t : mesh.triangles) {
-    fmt::format_to(std::back_inserter(groups[vertices.labels[t[0]]]),
-                   "f {0}//{0} {1}//{1} {2}//{2}\n",
-                   t[0] + 1,
-                   t[1] + 1,
-                   t[2] + 1);
+    groups[vertices.labels[t[0]]] +=
+        fmt::format("f {0}//{0} {1}//{1} {2}//{2}\n", t[0] + 1, t[1] + 1, t[2] + 1);
   }
   for (const auto& [label, faces] : groups) {
-    fmt::format_to(out, "g label_{}\n", label);
+    text += fmt::format("g label_{}\n", label);
     text += faces;
   }
   return text;

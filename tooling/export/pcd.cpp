@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tooling/export/pcd.hpp"
 
-#include <iterator>
-
 #include "stillmap/core/append_bytes.hpp"
 #include "stillmap/core/error.hpp"
 
@@ -26,12 +24,10 @@ void append_binary(std::string& bytes, const PointCloud& cloud, std::size_t i) {
 }
 
 void append_ascii(std::string& text, const PointCloud& cloud, std::size_t i) {
-  for (const float value : cloud.positions[i])
-    fmt::format_to(std::back_inserter(text), "{} ", value);
-  fmt::format_to(std::back_inserter(text), "{} {}", packed(cloud.colors[i]), label_of(cloud, i));
+  for (const float value : cloud.positions[i]) text += fmt::format("{} ", value);
+  text += fmt::format("{} {}", packed(cloud.colors[i]), label_of(cloud, i));
   if (!cloud.normals.empty()) {
-    for (const float value : cloud.normals[i])
-      fmt::format_to(std::back_inserter(text), " {}", value);
+    for (const float value : cloud.normals[i]) text += fmt::format(" {}", value);
   }
   text += '\n';
 }

@@ -42,7 +42,7 @@ TEST(Covisibility, EqualsBruteForce) {
     for (const auto& [id, keyframe] : map.keyframes()) {
       std::vector<std::pair<int, KeyframeId>> expected = sharing(map, keyframe.landmarks);
       EXPECT_EQ(plain(keyframes_seeing(map, keyframe.landmarks)), expected);
-      std::erase_if(expected, [&](const auto& entry) { return entry.second == id; });
+      std::erase_if(expected, [own = id](const auto& entry) { return entry.second == own; });
       EXPECT_EQ(plain(covisible_keyframes(map, id)), expected);
       pairs += expected.size();
     }

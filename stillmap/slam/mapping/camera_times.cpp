@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <ranges>
 #include <set>
 #include <utility>
 
@@ -45,10 +44,9 @@ TimeEvidence time_evidence_of(const Map& window,
                               const CameraModel& camera,
                               const MeasurementModel& measure) {
   std::set<KeyframeId> asked(core.begin(), core.end());
-  std::size_t latest = 0;
-  for (const auto& [id, keyframe] : std::views::reverse(window.keyframes())) {
-    if (latest++ == kLatestKeyframes) break;
-    asked.insert(id);
+  auto latest = window.keyframes().rbegin();
+  for (std::size_t i = 0; i < kLatestKeyframes && latest != window.keyframes().rend(); ++i) {
+    asked.insert((latest++)->first);
   }
   MapProblem made = make_problem(window, asked, camera, measure);
   TimedBundle bundle{std::move(made.problem), {}, {}};
