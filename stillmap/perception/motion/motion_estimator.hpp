@@ -71,7 +71,7 @@ struct MotionStateConfig {
     visit("standing_frames",
           self.standing_frames,
           FieldInfo{"number of frames after which an object that has stood where it was first seen "
-                    "is static for the pose",
+                    "is static for the pose and the map",
                     "frames",
                     1,
                     100000});
