@@ -99,7 +99,7 @@ class SimulatedWalk {
 };
 
 inline Tracker make_tracker() {
-  const MeasurementModel measure(kMeasurement, Walk::world().level_scales());
+  const MeasurementModel measure(kMeasurement, SimulatedWalk::world().level_scales());
   return Tracker({}, {}, simulated_camera(), measure, 0);
 }
 
