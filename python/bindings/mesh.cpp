@@ -26,40 +26,40 @@ constexpr const char* kSurfaceMeshDoc =
 
 `cell_m`: edge of the cubes in which the surface is looked for, metres.)";
 
-Mesh mesh_of(const PointCloud& map, double cell_m) {
+SurfaceMesh mesh_of(const PointCloud& map, double cell_m) {
   if (map.normals.empty() && !map.empty())
     throw Error("map: no normals, expected one for each point");
   if (!(cell_m >= 0.001 && cell_m <= 1)) throw Error("cell_m: {}, expected 0.001 to 1", cell_m);
-  return map.empty() ? Mesh{} : surface_mesh(map, {.cell_m = cell_m});
+  return map.empty() ? SurfaceMesh{} : surface_mesh(map, {.cell_m = cell_m});
 }
 
 }  // namespace
 
 void add_mesh(py::module_& module) {
-  py::class_<Mesh>(module, "Mesh", kMeshDoc)
+  py::class_<SurfaceMesh>(module, "Mesh", kMeshDoc)
       .def_property_readonly(
           "vertices",
-          [](const Mesh& self) -> const PointCloud& { return self.vertices; },
+          [](const SurfaceMesh& self) -> const PointCloud& { return self.vertices; },
           py::return_value_policy::reference_internal,
           "A PointCloud with colours, labels and normals.")
       .def_property_readonly(
           "triangles",
           [](const py::object& self) -> py::object {
-            const auto& mesh = py::cast<const Mesh&>(self);
+            const auto& mesh = py::cast<const SurfaceMesh&>(self);
             const auto* indices = reinterpret_cast<const std::uint32_t*>(mesh.triangles.data());
             return shared_array(indices, mesh.triangles.size(), 3, self);
           },
           "Places in `vertices`, counter-clockwise from outside, M x 3 uint32.")
       .def(
           "save",
-          [](const Mesh& self, const std::filesystem::path& file) {
+          [](const SurfaceMesh& self, const std::filesystem::path& file) {
             write_file_atomically(file, encode_mesh(self, file));
           },
           py::arg("file"),
           py::call_guard<py::gil_scoped_release>(),
           doc("save(self, file)", "Writes a .ply, .obj or .glb, as `stillmap export --mesh` does.")
               .c_str())
-      .def("__repr__", [](const Mesh& self) {
+      .def("__repr__", [](const SurfaceMesh& self) {
         return fmt::format("<stillmap.Mesh of {} triangles>", self.triangles.size());
       });
   module.def("surface_mesh",
