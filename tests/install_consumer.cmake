@@ -13,7 +13,7 @@ endfunction()
 file(REMOVE_RECURSE ${WORK_DIR})
 step("install" ${CMAKE_COMMAND} --install ${STILLMAP_BINARY_DIR} --prefix ${WORK_DIR}/prefix)
 step("configure" ${CMAKE_COMMAND} -S ${CONSUMER_SOURCE_DIR} -B ${WORK_DIR}/build -G ${GENERATOR}
-  -DHEADERS=${HEADERS} -DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix -DCMAKE_CXX_COMPILER=${CXX_COMPILER}
+  -DHEADERS=${HEADERS} -DVERSION=${VERSION} -DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix -DCMAKE_CXX_COMPILER=${CXX_COMPILER}
   -DCMAKE_BUILD_TYPE=${BUILD_TYPE})
 step("build" ${CMAKE_COMMAND} --build ${WORK_DIR}/build)
 step("run" ${WORK_DIR}/build/consumer)
