@@ -23,7 +23,7 @@ class RenderedOffice {
   static constexpr std::uint32_t kFrames = 12;
 
   RenderedOffice()
-      : sequence_(Sequence::open(folder_)),
+      : sequence_(Sequence::open(folder_, kAsWritten)),
         detections_(DetectionsFolder::open(
             folder_ / "detections", {sequence_.camera().width_px, sequence_.camera().height_px})) {
     for (std::uint32_t k = 0; k < kFrames; ++k) {
@@ -83,6 +83,9 @@ class RenderedOffice {
     write_sequence(rendered(), name, {.threads = 2, .detections = DetectionKind::kImperfect});
     return name;
   }
+
+  // Named: GCC 12 takes the members of a temporary one for uninitialized here.
+  inline static const SequenceOptions kAsWritten;
 
   std::filesystem::path folder_ = write();
   Sequence sequence_;

@@ -207,7 +207,8 @@ struct Table {
 
 void try_place(const Place& place, const std::vector<Place>& places, int trials, Table& table) {
   const std::size_t known = place.sequence.size() / 2;
-  RelocationTrial trial({}, place.sequence.camera());
+  const SystemConfig config;
+  RelocationTrial trial(config, place.sequence.camera());
   for (std::size_t i = 0; i < known; ++i) trial.show(view(place, i));
   std::mt19937 rng = rng_for(0, FrameId(0), RandomPurpose::kAbsolutePose);
   for (const bool visited : {true, false}) {
