@@ -68,19 +68,12 @@ PointCloud static_map(std::span<const PosedView> views,
 DynamicRegions dynamic_regions(const DynamicMask& mask, const Mask& excluded) {
   if (mask.extended.mat.empty()) return {excluded, {}};
   const int side = std::max(1, mask.jumps.mat.cols / kJumpsPerWidth);
-  cv::Mat1b moving;
+  JumpImage areas;
   cv::morphologyEx(mask.jumps.mat,
-                   moving,
+                   areas.mat,
                    cv::MORPH_OPEN,
                    cv::getStructuringElement(cv::MORPH_RECT, cv::Size(side, side)));
-  for (int row = 0; row < moving.rows; ++row) {
-    const std::uint8_t* ids = mask.extended.mat[row];
-    std::uint8_t* target = moving[row];
-    for (int x = 0; x < moving.cols; ++x) {
-      if (ids[x] != 0 && !mask.resting[ids[x]]) target[x] = 255;
-    }
-  }
-  return {excluded, Mask(moving)};
+  return {excluded, mask.moving(areas)};
 }
 
 }  // namespace stillmap

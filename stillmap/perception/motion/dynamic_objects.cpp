@@ -58,10 +58,10 @@ Mask DynamicMask::all() const {
   return Mask(both);
 }
 
-Mask DynamicMask::moving() const {
+Mask DynamicMask::moving(const JumpImage& counted) const {
   cv::Mat1b pixels(extended.mat.size());
   for (int row = 0; row < pixels.rows; ++row) {
-    const std::uint8_t *ids = extended.mat[row], *jump = jumps.mat[row];
+    const std::uint8_t *ids = extended.mat[row], *jump = counted.mat[row];
     std::uint8_t* target = pixels[row];
     for (int x = 0; x < pixels.cols; ++x) {
       const bool moves = ids[x] != 0 && !resting[ids[x]];

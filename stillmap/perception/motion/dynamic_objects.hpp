@@ -63,7 +63,9 @@ struct DynamicMask {
   /// The union of extended masks and depth jumps.
   [[nodiscard]] Mask all() const;
   /// The same without the masks of the objects that rest.
-  [[nodiscard]] Mask moving() const;
+  [[nodiscard]] Mask moving() const { return moving(jumps); }
+  /// The same with other jumps, such as those of them that form areas.
+  [[nodiscard]] Mask moving(const JumpImage& counted) const;
 };
 
 struct DynamicsResult {
