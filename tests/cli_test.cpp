@@ -20,6 +20,7 @@ using testing::EndsWith;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::MatchesRegex;
+using testing::Not;
 using testing::StartsWith;
 
 TEST_F(Cli, HelpShowsCommandsAndExamples) {
@@ -125,6 +126,15 @@ TEST_F(Cli, ConfigChecksAFile) {
   const Outcome missing = run("config missing.yaml");
   EXPECT_EQ(missing.exit_code, 2);
   EXPECT_THAT(missing.err, StartsWith("stillmap: missing.yaml: cannot be opened: "));
+}
+
+TEST_F(Cli, SynthRendersTheRoomWithoutPeople) {
+  const std::string scene = " --scene sitting_static --frames 3 --size 64x48 --assets none";
+  ASSERT_EQ(run("synth office" + scene).exit_code, 0);
+  ASSERT_EQ(run("synth room --without people" + scene).exit_code, 0);
+  EXPECT_EQ(content("room/groundtruth.txt"), content("office/groundtruth.txt"));
+  EXPECT_THAT(content("room/truth/dynamic_map.ply"), HasSubstr("element vertex 0\n"));
+  EXPECT_THAT(content("office/truth/dynamic_map.ply"), Not(HasSubstr("element vertex 0\n")));
 }
 
 TEST_F(Cli, AFullDiskIsAnError) {

@@ -40,12 +40,13 @@ struct SynthArguments {
   std::size_t threads = std::max(1U, std::thread::hardware_concurrency());
 };
 
-// The effects that --without switches off, by name.
+// What --without leaves out, by name.
 struct Effect {
   std::string_view name;
   void (*remove)(SyntheticOptions&);
 };
-constexpr std::array<Effect, 7> kEffects{{
+constexpr std::array<Effect, 8> kEffects{{
+    {"people", [](SyntheticOptions& o) { o.activity = Activity::kNone; }},
     {"shadows", [](SyntheticOptions& o) { o.render.light.shadows = false; }},
     {"antialiasing", [](SyntheticOptions& o) { o.render.antialiasing = false; }},
     {"motion-blur", [](SyntheticOptions& o) { o.sensor.exposure_s = 0; }},
@@ -174,10 +175,10 @@ void add_synth_command(CLI::App& app, CommandResult&) {
   command->add_option("--size", arguments->size, "WIDTHxHEIGHT in pixels")->capture_default_str();
   command->add_flag(
       "--clean", arguments->clean, "a perfect sensor: no noise, blur, drift or missing depth");
-  command->add_option(
-      "--without",
-      arguments->without,
-      fmt::format("switches one effect off, repeatable; one of: {}", joined(effect_names(), ", ")));
+  command->add_option("--without",
+                      arguments->without,
+                      fmt::format("leaves one thing or effect out, repeatable; one of: {}",
+                                  joined(effect_names(), ", ")));
   command
       ->add_option("--detections",
                    arguments->detections,
