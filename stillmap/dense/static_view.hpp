@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+
 #include <Eigen/Geometry>
 
 #include "stillmap/dense/compact_cloud.hpp"
@@ -12,6 +14,12 @@ namespace stillmap {
 struct StaticView {
   CompactCloud cloud;
   RangeImage range;
+
+  /// The memory of its points and cells.
+  [[nodiscard]] std::size_t bytes() const {
+    return cloud.places.size() * sizeof(cloud.places[0]) + cloud.colors.size() * sizeof(Rgb) +
+           cloud.labels.size() + range.cells.size() * sizeof(RangeCell);
+  }
 };
 
 struct PosedView {

@@ -189,6 +189,14 @@ ViewGain gain_of(const PosedView& view,
   return news;
 }
 
+const StaticView* least_needed(std::span<const PosedView> held,
+                               const PosedView& newest,
+                               const CameraModel& camera,
+                               const ViewSelectionConfig& config,
+                               const FreeSpaceConfig& free_space) {
+  return Comparison(camera, config, free_space).least_needed(held, held, newest);
+}
+
 bool is_worth_keeping(const ViewGain& news, const ViewSelectionConfig& config) {
   return news.unknown > config.min_unknown_share || news.came > config.min_changed_share ||
          news.went > config.min_changed_share;

@@ -16,6 +16,7 @@ struct ViewSelectionConfig {
   double min_unknown_share = 0.1;
   double min_changed_share = 0.01;
   int most = 100;
+  double most_mb = 0;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -45,6 +46,13 @@ struct ViewSelectionConfig {
                   "",
                   1,
                   100000});
+    visit("most_mb",
+          self.most_mb,
+          FieldInfo{"memory of all views above which the one that is needed least goes; 0: as much "
+                    "as they take",
+                    "MB",
+                    0,
+                    1e6});
   }
 };
 
@@ -69,6 +77,14 @@ struct ViewGain {
                                const CameraModel& camera,
                                const ViewSelectionConfig& config,
                                const FreeSpaceConfig& free_space);
+
+/// The view held that shows the least which few others show, `newest` included; the earliest of
+/// equals. Null if none is held. Takes time in the square of their number.
+[[nodiscard]] const StaticView* least_needed(std::span<const PosedView> held,
+                                             const PosedView& newest,
+                                             const CameraModel& camera,
+                                             const ViewSelectionConfig& config,
+                                             const FreeSpaceConfig& free_space);
 
 /// Whether a view with this gain is kept.
 [[nodiscard]] bool is_worth_keeping(const ViewGain& news, const ViewSelectionConfig& config);

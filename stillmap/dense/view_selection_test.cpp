@@ -182,6 +182,19 @@ TEST(ViewChoice, AViewOfACrowdedPlaceTakesThatOfOneThatIsNotNeeded) {
   EXPECT_EQ(held_at(elsewhere), 3);
 }
 
+TEST(ViewChoice, TheViewThatOthersShowTooIsNeededLeast) {
+  const StaticView same = view_of({}), alone = view_of({}), newest = view_of({});
+  const Eigen::Isometry3d elsewhere(Eigen::Translation3d(50, 0, 0));
+  std::vector<StaticView> many(6, same);
+  std::vector<PosedView> held = {{elsewhere, &alone}};
+  for (const StaticView& view : many) held.push_back({Eigen::Isometry3d::Identity(), &view});
+  const PosedView last{Eigen::Isometry3d::Identity(), &newest};
+  EXPECT_EQ(least_needed(held, last, camera(), {}, {}), &many[0]);
+  const std::vector<PosedView> one = {held[0]};
+  EXPECT_EQ(least_needed(one, last, camera(), {}, {}), &alone);
+  EXPECT_EQ(least_needed({}, last, camera(), {}, {}), nullptr);
+}
+
 TEST(ViewChoice, ViewsWithoutPointsOrRangeAreNoTrouble) {
   Chooser chooser;
   EXPECT_EQ(chooser.show({}, 5), 0);

@@ -95,6 +95,26 @@ void DenseStage::keep_if_worth(Session& session, ViewRecord made) const {
     }
   }
   session.views.push_back(std::move(made));
+  keep_within_budget(session);
+}
+
+// Views go from the submap of the newest; from others when it has no more.
+void DenseStage::keep_within_budget(Session& session) const {
+  if (config_.views.most_mb == 0) return;
+  std::vector<ViewRecord>& views = session.views;
+  std::size_t bytes = 0;
+  for (const ViewRecord& record : views) bytes += record.view->bytes();
+  while (static_cast<double>(bytes) > config_.views.most_mb * 1e6 && views.size() > 1) {
+    std::vector<PosedView> held =
+        posed_views(session, submap_of(session, session.frames[views.back().frame]));
+    const PosedView newest = held.back();
+    held.pop_back();
+    const StaticView* gone = held.empty()
+                                 ? views.front().view.get()
+                                 : least_needed(held, newest, camera_, config_.views, config_.free);
+    bytes -= gone->bytes();
+    std::erase_if(views, [gone](const ViewRecord& record) { return record.view.get() == gone; });
+  }
 }
 
 }  // namespace stillmap

@@ -56,6 +56,7 @@ MapTruth truth() {
 struct Outcome {
   int inserted = 0;  ///< key frames, also those culled since
   std::size_t views = 0;
+  double views_mb = 0;
   double ate_m = 0;
   MapQuality map;
 };
@@ -78,14 +79,19 @@ Outcome go(std::uint32_t ways, const SystemConfig& config) {
   outcome.ate_m = ate && result.trajectory.size() == ways * kFrames ? ate->translation_m.rmse : 1;
   static const MapTruth kTruth = truth();
   outcome.map = map_quality(result.map, kTruth);
-  outcome.views = system.take_session().views.size();
-  fmt::print("{} ways: {} key frames inserted, {} views, ATE {:.4f} m, sa {:.4f}, {:.4f} m\n",
-             ways,
-             outcome.inserted,
-             outcome.views,
-             outcome.ate_m,
-             outcome.map.sa,
-             outcome.map.accuracy_m.value_or(1));
+  const Session session = system.take_session();
+  outcome.views = session.views.size();
+  for (const ViewRecord& record : session.views)
+    outcome.views_mb += static_cast<double>(record.view->bytes()) / 1e6;
+  fmt::print(
+      "{} ways: {} key frames inserted, {} views of {:.2f} MB, ATE {:.4f} m, sa {:.4f}, {:.4f} m\n",
+      ways,
+      outcome.inserted,
+      outcome.views,
+      outcome.views_mb,
+      outcome.ate_m,
+      outcome.map.sa,
+      outcome.map.accuracy_m.value_or(1));
   return outcome;
 }
 
@@ -128,6 +134,15 @@ TEST(Growth, APlaceHasABoundedNumberOfViews) {
   EXPECT_LE(outcome.views, 80U) << "162 without a bound; some see less than half of others";
   EXPECT_GT(outcome.map.sa, early().map.sa - 0.002);
   EXPECT_LT(*outcome.map.accuracy_m, 1.1 * *early().map.accuracy_m);
+}
+
+TEST(Growth, ViewsTakeNoMoreMemoryThanTheyMay) {
+  SystemConfig bounded = settings();
+  bounded.cloud.views.most_mb = early().views_mb / 2;
+  const Outcome outcome = go(4, bounded);
+  EXPECT_LE(outcome.views_mb, early().views_mb / 2);
+  EXPECT_GT(outcome.views_mb, early().views_mb / 3);
+  EXPECT_GT(outcome.map.sa, early().map.sa - 0.01);
 }
 
 TEST(Growth, KeyFramesDoNotComeOnlyToGoAgain) {
