@@ -6,6 +6,7 @@
 #include <iterator>
 #include <optional>
 
+#include "stillmap/core/error.hpp"
 #include "stillmap/dense/key_table.hpp"
 #include "stillmap/dense/label_image.hpp"
 #include "stillmap/dense/selected_points.hpp"
@@ -91,7 +92,7 @@ std::vector<VacatedPlace> origins_of(std::size_t found,
     if (!last_seen_before(histories[k], *histories[found].came)) continue;
     const double fits = likeness(objects[k], objects[found]);
     sum += fits;
-    origins.push_back({k, found, fits});
+    origins.push_back({objects[k].track, objects[found].track, fits});
   }
   for (VacatedPlace& place : origins) place.confidence /= sum;
   return origins;
@@ -125,8 +126,9 @@ bool is_label_of(std::uint8_t label, const KnownObject& object) {
 }
 
 /// Whether a point belongs to an object's place and not to that of another of a similar class.
-bool is_at(const Eigen::Vector3d& p, std::size_t index, std::span<const KnownObject> objects) {
-  const KnownObject& object = objects[index];
+bool is_at(const Eigen::Vector3d& p,
+           const KnownObject& object,
+           std::span<const KnownObject> objects) {
   const double outside_m = object.extent.exteriorDistance(p);
   return outside_m <= kBesideExtent_m &&
          std::ranges::none_of(objects, [&](const KnownObject& other) {
@@ -139,15 +141,17 @@ bool is_at(const Eigen::Vector3d& p, std::size_t index, std::span<const KnownObj
 /// Marks what has an object's label at its place, and the unlabelled rims of that.
 void mark_gone(const PointCloud& map,
                std::span<const KnownObject> objects,
-               std::size_t index,
+               TrackId track,
                std::vector<bool>& gone) {
-  const KnownObject& object = objects[index];
+  const auto found = std::ranges::find(objects, track, &KnownObject::track);
+  STILLMAP_CHECK(found != objects.end());
+  const KnownObject& object = *found;
   if (object.extent.isEmpty() || map.labels.empty()) return;
   std::vector<std::size_t> unlabelled;
   NearSurface near;
   for (std::size_t i = 0; i < map.size(); ++i) {
     const Eigen::Vector3d p = map.positions[i].cast<double>();
-    if (!is_at(p, index, objects)) continue;
+    if (!is_at(p, object, objects)) continue;
     if (is_label_of(map.labels[i], object)) {
       gone[i] = true;
       near.add(p);
@@ -203,16 +207,17 @@ PointCloud without_vacated(const PointCloud& map,
   return selected_points(map, [&](std::size_t i) { return !gone[i]; });
 }
 
-PointCloud map_without_vacated(std::span<const PosedView> views,
-                               std::span<const KnownObject> objects,
-                               const CategoryTable& categories,
-                               const CameraModel& camera,
-                               const CloudConfig& config,
-                               std::size_t threads) {
-  PointCloud map = static_map(views, camera, config, threads);
+MapWithoutVacated map_without_vacated(std::span<const PosedView> views,
+                                      std::span<const KnownObject> objects,
+                                      const CategoryTable& categories,
+                                      const CameraModel& camera,
+                                      const CloudConfig& config,
+                                      std::size_t threads) {
+  MapWithoutVacated map{static_map(views, camera, config, threads), {}};
   if (config.free_space != "on" || objects.empty()) return map;
-  const auto places = vacated_places(objects, categories, views, camera, config.free);
-  return without_vacated(map, objects, places);
+  map.vacated = vacated_places(objects, categories, views, camera, config.free);
+  map.points = without_vacated(map.points, objects, map.vacated);
+  return map;
 }
 
 }  // namespace stillmap

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -12,18 +11,9 @@
 #include "stillmap/geometry/camera.hpp"
 #include "stillmap/perception/objects/categories.hpp"
 #include "stillmap/perception/objects/object_identities.hpp"
+#include "stillmap/perception/objects/object_state.hpp"
 
 namespace stillmap {
-
-/// The place of a thing that probably stands elsewhere now.
-struct VacatedPlace {
-  std::size_t left = 0;   ///< index of the object at that place
-  std::size_t found = 0;  ///< and of the one that it probably is now
-  double confidence = 0;  ///< 0 to 1
-};
-
-/// The confidence from which a place counts as vacated.
-inline constexpr double kVacatedFrom = 0.6;
 
 /// The places that nobody looked at again after a thing of the same look had come elsewhere.
 ///
@@ -54,13 +44,19 @@ inline constexpr double kVacatedFrom = 0.6;
                                          std::span<const VacatedPlace> places,
                                          double confidence = kVacatedFrom);
 
+/// A map, and the places that things have left for others, whatever the confidence.
+struct MapWithoutVacated {
+  PointCloud points;
+  std::vector<VacatedPlace> vacated;
+};
+
 /// static_map() without_vacated(), where `config` removes what views see through; else
-/// static_map().
-[[nodiscard]] PointCloud map_without_vacated(std::span<const PosedView> views,
-                                             std::span<const KnownObject> objects,
-                                             const CategoryTable& categories,
-                                             const CameraModel& camera,
-                                             const CloudConfig& config,
-                                             std::size_t threads = 1);
+/// static_map(), and no places.
+[[nodiscard]] MapWithoutVacated map_without_vacated(std::span<const PosedView> views,
+                                                    std::span<const KnownObject> objects,
+                                                    const CategoryTable& categories,
+                                                    const CameraModel& camera,
+                                                    const CloudConfig& config,
+                                                    std::size_t threads = 1);
 
 }  // namespace stillmap

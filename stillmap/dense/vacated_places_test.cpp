@@ -84,7 +84,8 @@ class OfficeWithChairs {
   /// How many points above the floor the map has within half a metre of a place.
   [[nodiscard]] std::size_t points_above_floor(const Place& at, bool with_objects = true) const {
     const std::vector<KnownObject> known = with_objects ? objects() : std::vector<KnownObject>();
-    const PointCloud map = map_without_vacated(posed(), known, CategoryTable({}), camera_, config_);
+    const PointCloud map =
+        map_without_vacated(posed(), known, CategoryTable({}), camera_, config_).points;
     std::size_t count = 0;
     for (std::size_t i = 0; i < map.size(); ++i) {
       const Eigen::Vector3f& p = map.positions[i];

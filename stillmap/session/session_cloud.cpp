@@ -37,7 +37,8 @@ PointCloud session_cloud(const Session& session, SubmapId submap, const std::str
   std::span<const KnownObject> objects;  // in the frame of the main submap
   if (submap == main_submap(session)) objects = session.objects;
   return map_without_vacated(
-      posed_views(session, submap), objects, categories, session.camera, config);
+             posed_views(session, submap), objects, categories, session.camera, config)
+      .points;
 }
 
 }  // namespace stillmap

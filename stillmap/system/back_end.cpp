@@ -178,8 +178,10 @@ RunResult BackEnd::result(const KnownObjects& known, std::size_t threads) const 
   result.frames_elsewhere = session_.frames.size() - first_frame_ - result.trajectory.size();
   result.keyframes = keyframes_in(session_, submap);
   result.loops = closed_loops_;
-  result.map =
+  MapWithoutVacated map =
       dense_.map_of(posed_views(session_, submap), known(T_odometry_world_), categories_, threads);
+  result.map = std::move(map.points);
+  result.vacated = std::move(map.vacated);
   return result;
 }
 
@@ -195,10 +197,12 @@ BackEnd BackEnd::inline_copy() const {
 PointCloud BackEnd::map_snapshot(const KnownObjects& known, std::size_t threads) const {
   BackEnd copy = inline_copy();
   copy.finish();
-  return copy.dense_.map_of(posed_views(copy.session_, copy.result_submap()),
-                            known(copy.T_odometry_world_),
-                            categories_,
-                            threads);
+  return copy.dense_
+      .map_of(posed_views(copy.session_, copy.result_submap()),
+              known(copy.T_odometry_world_),
+              categories_,
+              threads)
+      .points;
 }
 
 PointCloud BackEnd::map_with_poses(std::span<const std::optional<Eigen::Isometry3d>> T_world_frames,
@@ -224,7 +228,7 @@ PointCloud BackEnd::map_with_poses(std::span<const std::optional<Eigen::Isometry
       break;
     }
   }
-  return dense_.map_of(posed, objects, categories_, threads);
+  return dense_.map_of(posed, objects, categories_, threads).points;
 }
 
 Session BackEnd::take_session(std::vector<KnownObject> objects) {

@@ -51,10 +51,10 @@ class DenseStage {
 
   /// The map of the posed views, without things at places that they have left for others. `objects`
   /// are in the world frame of the poses. The result is the same for any number of threads.
-  [[nodiscard]] PointCloud map_of(std::span<const PosedView> views,
-                                  std::span<const KnownObject> objects,
-                                  const CategoryTable& categories,
-                                  std::size_t threads) const {
+  [[nodiscard]] MapWithoutVacated map_of(std::span<const PosedView> views,
+                                         std::span<const KnownObject> objects,
+                                         const CategoryTable& categories,
+                                         std::size_t threads) const {
     return map_without_vacated(views, objects, categories, camera_, config_, threads);
   }
 
@@ -67,6 +67,7 @@ class DenseStage {
                         const Session& session,
                         const Eigen::Isometry3d& T_odometry_world);
   void keep_if_worth(Session& session, ViewRecord made) const;
+  void keep_within_budget(Session& session) const;
 
   CloudConfig config_;
   CameraModel camera_;

@@ -136,6 +136,7 @@ SequenceRun RunLog::finish(System& system) {
   report.keyframes = result.keyframes;
   report.viewed = viewed_frames(run);
   report.frames_elsewhere = result.frames_elsewhere;
+  report.vacated = result.vacated;
   report.loops = result.loops;
   report.peak_memory_mb = peak_memory_mb();
   report.wall_s = wall_.lap_ms() / 1000.0;

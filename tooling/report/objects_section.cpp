@@ -38,6 +38,22 @@ std::string row_html(const ObjectSummary& object) {
       html_escape(motion_text(object)));
 }
 
+std::string vacated_html(const std::vector<VacatedPlace>& places) {
+  std::string text;
+  for (const VacatedPlace& place : places) {
+    const bool removed = place.confidence >= kVacatedFrom;
+    text += fmt::format(
+        "<p class=\"note\">#{} left its place while nobody looked, and is #{} now, with a "
+        "confidence "
+        "of {:.2f}: {}.</p>",
+        place.left.value,
+        place.found.value,
+        place.confidence,
+        removed ? "its old place is not in the map" : "too little, both places are in the map");
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string objects_html(const RunReport& report) {
@@ -63,10 +79,11 @@ std::string objects_html(const RunReport& report) {
       "Dynamics: "
       "{}. Shares are of the object's own frames.</p><div class=\"scroll\"><table class=\"words\">"
       "<tr><th>object</th><th>category</th><th>frames</th><th>filled in</th><th>dynamic</th>"
-      "<th>mostly because</th><th>motion</th></tr>{}</table></div>{}",
+      "<th>mostly because</th><th>motion</th></tr>{}</table></div>{}{}",
       html_escape(report.dynamics_mode),
       rows,
-      rest);
+      rest,
+      vacated_html(report.vacated));
 }
 
 }  // namespace stillmap

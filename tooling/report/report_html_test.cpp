@@ -95,6 +95,7 @@ RunReport full_report(const PointCloud& map) {
   chair.main_reason = "nobody near";
   chair.motions = {{"unknown", 2}, {"still", 28}, {"moved by someone", 10}};
   report.objects = {chair};
+  report.vacated = {{TrackId(4), TrackId(9), 0.75}, {TrackId(5), TrackId(8), 0.25}};
   report.map = &map;
   report.warnings = {"depth is sparse"};
   return report;
@@ -164,6 +165,9 @@ TEST(ReportHtml, ShowsAllThatIsKnown) {
         "<td>#4 chair</td><td>potentially dynamic</td><td>40</td><td>3</td>"
         "<td>25.0\u00A0%</td><td>nobody near</td><td>still 70.0\u00A0%, moved "
         "by someone 25.0\u00A0%</td>",
+        "#4 left its place while nobody looked, and is #9 now, with a confidence of 0.75: its old "
+        "place is not in the map.",
+        "of 0.25: too little, both places are in the map.",
         "<td>31.0\u00A0ms</td>"}) {
     EXPECT_THAT(page, HasSubstr(part));
   }

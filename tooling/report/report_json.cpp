@@ -122,11 +122,23 @@ Json bounds_json(const PointCloud* map) {
           {"bounds_max", {high.x(), high.y(), high.z()}}};
 }
 
+Json vacated_json(const std::vector<VacatedPlace>& places) {
+  Json all = Json::array();
+  for (const VacatedPlace& place : places) {
+    all.push_back({{"track", place.left.value},
+                   {"found_as", place.found.value},
+                   {"confidence", place.confidence},
+                   {"removed", place.confidence >= kVacatedFrom}});
+  }
+  return all;
+}
+
 Json map_json(const RunReport& report) {
   const PointCloud* map = report.map;
   Json json = {{"points", map != nullptr ? Json(map->size()) : Json()}};
   json.update(bounds_json(map));
   json["poses"] = map != nullptr ? Json(report.map_at_true_poses ? "truth" : "estimated") : Json();
+  json["vacated"] = vacated_json(report.vacated);
   json.update(map_quality_json(report.map_quality));
   return json;
 }

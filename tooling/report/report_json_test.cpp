@@ -198,6 +198,15 @@ TEST(ReportJson, AnEmptyMapHasNoBounds) {
   EXPECT_TRUE(j.at("bounds_min").is_null());
 }
 
+TEST(ReportJson, SaysWhichPlacesWereLeft) {
+  RunReport report;
+  report.vacated = {{TrackId(4), TrackId(9), 0.75}, {TrackId(5), TrackId(8), 0.25}};
+  const json j = json::parse(report_json(report)).at("map").at("vacated");
+  const json of_4 = {{"track", 4}, {"found_as", 9}, {"confidence", 0.75}, {"removed", true}};
+  const json of_5 = {{"track", 5}, {"found_as", 8}, {"confidence", 0.25}, {"removed", false}};
+  EXPECT_EQ(j, json({of_4, of_5}));
+}
+
 TEST(ReportJson, SaysHowGoodTheMapIs) {
   const PointCloud map;
   RunReport report;

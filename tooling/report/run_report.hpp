@@ -93,6 +93,8 @@ struct RunReport {
   std::map<std::string, std::size_t> matches_judged_by;
   /// By ascending track number; nullopt without a source of objects.
   std::optional<std::vector<ObjectSummary>> objects;
+  /// Things that have left their place for another, nobody having looked at the old one again.
+  std::vector<VacatedPlace> vacated;
   /// From the first frame to the first with an object of a dynamic class; nullopt if none.
   std::optional<double> first_dynamic_s;
 

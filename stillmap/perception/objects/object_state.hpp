@@ -85,4 +85,14 @@ struct ObjectState {
   Motion motion;                        ///< unknown in a frame without a pose
 };
 
+/// The place of a thing that probably stands elsewhere now.
+struct VacatedPlace {
+  TrackId left;           ///< of the object at that place
+  TrackId found;          ///< and of the one that it probably is now
+  double confidence = 0;  ///< 0 to 1
+};
+
+/// The confidence from which a place counts as vacated, so that the thing at it is not in the map.
+inline constexpr double kVacatedFrom = 0.6;
+
 }  // namespace stillmap
