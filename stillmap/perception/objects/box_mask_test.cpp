@@ -117,6 +117,35 @@ TEST(MaskRefinedByDepth, KeepsPixelsWithoutDepthAndIsEmptyWithoutAny) {
   EXPECT_EQ(overlap_of_refined(depth, kThing), 0);
 }
 
+// The network takes the floor beside the thing for a part of it. Depth has no step there, but the
+// floor goes on beyond the box.
+TEST(MaskRefinedByDepth, LosesAFloorThatGoesOn) {
+  const DepthImage depth = room_with_thing();
+  ObjectMask mask(cv::Mat1b(480, 640, std::uint8_t{0}));
+  const cv::Rect rough(240, 140, 230, 220);
+  mask.mat(rough).setTo(5);
+  DetectedObject object = with_rough_mask(5, 0.9F);
+  object.box = {240, 140, 470, 360};
+  EXPECT_GT(overlap(mask_refined_by_depth(depth, mask, object), kThing), 0.8);
+}
+
+// A back has no step to the floor behind it either, goes on beyond a box that is too small, but is
+// round.
+TEST(MaskRefinedByDepth, KeepsWhatIsRound) {
+  DepthImage depth = room_with_thing();
+  for (int x = kThing.x; x < kThing.br().x; ++x) {
+    const float off = static_cast<float>(x - kThing.x) / static_cast<float>(kThing.width) - 0.5F;
+    cv::Mat1f(depth.mat, cv::Rect(x, kThing.y, 1, kThing.height)).setTo(1.9F + 0.6F * off * off);
+  }
+  ObjectMask mask(cv::Mat1b(480, 640, std::uint8_t{0}));
+  mask.mat(kThing).setTo(5);
+  DetectedObject object = with_rough_mask(5, 0.9F);
+  object.box.y1 = 270;
+  const PixelPatch patch = mask_refined_by_depth(depth, mask, object);
+  const cv::Rect in_box(kThing.x, kThing.y, kThing.width, 270 - kThing.y);
+  EXPECT_GT(cv::countNonZero(patch.pixels(in_box - patch.area.tl())), 0.9 * in_box.area());
+}
+
 // A person's mask covers a part of the chair before the person: the chair, a box alone, gets it.
 TEST(CompleteMasks, RefinedMasksLeavePixelsToBoxesAlone) {
   DepthImage depth = room_with_thing();
@@ -134,6 +163,24 @@ TEST(CompleteMasks, RefinedMasksLeavePixelsToBoxesAlone) {
   const cv::Mat1b before = found.mask.mat;
   (void)complete_masks(found, depth, {std::nullopt, std::nullopt});
   EXPECT_EQ(cv::countNonZero(before != found.mask.mat), 0);
+}
+
+// A box of somebody far away lies in that of somebody near, who got all pixels but an edge.
+TEST(CompleteMasks, PixelsOfSomebodyBehindGoToTheBoxThere) {
+  DepthImage depth = room_with_thing();
+  const cv::Rect far(260, 60, 80, 85);
+  cv::Mat1f(depth.mat, far).setTo(3.2F);
+  FrameDetections found;
+  found.objects = {with_rough_mask(1, 0.9F), with_rough_mask(2, 0.5F)};
+  found.objects[0].box = {248, 58, 372, 302};
+  found.objects[1].box = {258, 58, 342, 147};
+  found.mask = ObjectMask(cv::Mat1b(480, 640, std::uint8_t{0}));
+  found.mask.mat(kThing).setTo(1);
+  found.mask.mat(cv::Rect(258, 56, 84, 6)).setTo(2);
+  found.mask.mat(far).setTo(1);
+  (void)complete_masks(found, depth, {std::nullopt, std::nullopt});
+  EXPECT_GT(cv::countNonZero(found.mask.mat(kThing) == 1), 0.9 * kThing.area());
+  EXPECT_GT(cv::countNonZero(found.mask.mat(far) == 2), 0.9 * far.area());
 }
 
 TEST(CompleteMasks, GivesPixelsToBoxesAloneTheSurestFirst) {
