@@ -21,6 +21,7 @@ enum class DepthStability : std::uint8_t {
 
 struct DepthStabilityConfig {
   bool enabled = true;
+  bool in_full = false;
   double mad_factor = 3.0;
   bool relative = true;
   std::string rejected = "depthless";
@@ -30,6 +31,7 @@ struct DepthStabilityConfig {
     visit("enabled",
           self.enabled,
           FieldInfo{"whether features are judged by the stability of the depth around them"});
+    visit("in_full", self.in_full, FieldInfo{"whether mode full judges them, too"});
     visit("mad_factor",
           self.mad_factor,
           FieldInfo{

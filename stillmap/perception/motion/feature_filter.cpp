@@ -53,7 +53,10 @@ FeatureFilter::FeatureFilter(const FeatureFilterConfig& config,
       rule_(mode.static_matches),
       drops_missing_depth_(mode.depth_stability == DepthStabilityRule::kDrop),
       seed_(seed) {
-  if (mode.depth_stability == DepthStabilityRule::kNone) config_.depth_stability.enabled = false;
+  const bool judges_depths =
+      mode.depth_stability == DepthStabilityRule::kDrop ||
+      (mode.depth_stability == DepthStabilityRule::kConfigured && config_.depth_stability.in_full);
+  if (!judges_depths) config_.depth_stability.enabled = false;
   if (mode.depth_stability == DepthStabilityRule::kDrop) {
     config_.depth_stability.relative = false;
     config_.depth_stability.rejected = "drop";

@@ -259,8 +259,10 @@ struct DepthFaults {
     two.depth.mat(pixel(hole) + cv::Point(0, 1)) = 0.0F;
   }
 
-  [[nodiscard]] FilteredFeatures filtered(const DynamicsMode& mode) const {
-    return FeatureFilter({}, two.camera, mode, 1).filter(scene_of(two));
+  [[nodiscard]] FilteredFeatures filtered(const DynamicsMode& mode, bool in_full = false) const {
+    FeatureFilterConfig config;
+    config.depth_stability.in_full = in_full;
+    return FeatureFilter(config, two.camera, mode, 1).filter(scene_of(two));
   }
   [[nodiscard]] std::size_t index_of(const FilteredFeatures& filtered, std::size_t i) const {
     const auto at = std::ranges::find(filtered.features.raw_px, two.current.raw_px[i]);
@@ -277,20 +279,22 @@ TEST(FeatureFilter, PaperDropsFeaturesOfUnstableAndOfMissingDepth) {
   EXPECT_GE(count(filtered, FeatureVerdict::kUnstableDepth), 1U);
 }
 
-TEST(FeatureFilter, FullKeepsThemAndTrustsNoUnstableDepth) {
+TEST(FeatureFilter, FullKeepsThemAndTrustsNoUnstableDepthWhenTold) {
   const DepthFaults faults;
-  const FilteredFeatures filtered = faults.filtered(dynamics_mode("full"));
+  const FilteredFeatures filtered = faults.filtered(dynamics_mode("full"), true);
   ASSERT_EQ(filtered.features.size(), faults.two.current.size());
   EXPECT_EQ(filtered.features.depth_m[faults.jump], 0.0F);
   EXPECT_EQ(filtered.features.sensor_depth_m[faults.jump], 0.0F);
   EXPECT_EQ(filtered.features.depth_m[faults.hole], faults.two.current.depth_m[faults.hole]);
 }
 
-TEST(FeatureFilter, MaskJudgesNothing) {
+TEST(FeatureFilter, MaskAndFullJudgeNothing) {
   const DepthFaults faults;
-  const FilteredFeatures filtered = faults.filtered(dynamics_mode("mask"));
-  EXPECT_EQ(count(filtered, FeatureVerdict::kStable), faults.two.current.size());
-  EXPECT_EQ(filtered.features.depth_m, faults.two.current.depth_m);
+  for (const char* const mode : {"mask", "full"}) {
+    const FilteredFeatures filtered = faults.filtered(dynamics_mode(mode));
+    EXPECT_EQ(count(filtered, FeatureVerdict::kStable), faults.two.current.size()) << mode;
+    EXPECT_EQ(filtered.features.depth_m, faults.two.current.depth_m) << mode;
+  }
 }
 
 TEST(FeatureFilter, TheSameSeedGivesTheSameBits) {

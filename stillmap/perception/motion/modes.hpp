@@ -41,7 +41,7 @@ enum class JumpRule : std::uint8_t {
 enum class DepthStabilityRule : std::uint8_t {
   kNone,        ///< features are not judged
   kDrop,        ///< features of missing and of unstable depth are dropped, spreads compared as is
-  kConfigured,  ///< as dynamics.depth_stability says; features of missing depth stay
+  kConfigured,  ///< if dynamics.depth_stability.in_full; features of missing depth stay
 };
 
 /// How matches in the boxes of dynamic objects are judged by epipolar geometry.
