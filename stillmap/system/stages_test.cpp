@@ -158,6 +158,7 @@ SystemConfig with_stages(const std::string& mode, std::initializer_list<std::str
     const bool wanted = std::ranges::find(stages, stage) != stages.end();
     set_value(list_fields(config), fmt::format("dynamics.{}={}", stage, wanted));
   }
+  config.dynamics.features.depth_stability.in_full = true;
   return config;
 }
 
