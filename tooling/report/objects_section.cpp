@@ -44,8 +44,7 @@ std::string vacated_html(const std::vector<VacatedPlace>& places) {
     const bool removed = place.confidence >= kVacatedFrom;
     text += fmt::format(
         "<p class=\"note\">#{} left its place while nobody looked, and is #{} now, with a "
-        "confidence "
-        "of {:.2f}: {}.</p>",
+        "confidence of {:.2f}: {}.</p>",
         place.left.value,
         place.found.value,
         place.confidence,

@@ -75,14 +75,19 @@ std::vector<std::size_t> order_of_completion(const FrameDetections& detections) 
 void pass_on(cv::Mat1b& mask,
              const cv::Mat1b& before,
              std::span<const std::size_t> others,
-             std::vector<DetectedObject>& objects) {
+             const std::vector<DetectedObject>& objects,
+             MaskAreas& areas) {
   const cv::Mat1b lost = before & (mask == 0);
   for (const std::size_t i : others) {
     const DetectedObject& other = objects[i];
     if (other.pixel_source != PixelSource::kRoughNetwork) continue;
     const cv::Rect box = pixels_of(other.box, mask.size());
-    if (cv::countNonZero(lost(box)) < kFills * box.area()) continue;
-    if (box.empty() || cv::countNonZero(mask == other.id) > kHardlyAny * box.area()) continue;
+    if (box.empty()) continue;
+    std::size_t& pixels = areas[static_cast<std::size_t>(other.id)].pixels;
+    const int gained = cv::countNonZero(lost(box));
+    if (gained < kFills * box.area()) continue;
+    if (static_cast<double>(pixels) > kHardlyAny * box.area()) continue;
+    pixels += static_cast<std::size_t>(gained);
     mask(box).setTo(other.id, lost(box));
     lost(box).setTo(0);
   }
@@ -122,15 +127,14 @@ std::vector<bool> complete_masks(FrameDetections& detections,
                                  const DepthImage& depth,
                                  const std::vector<std::optional<float>>& expected_depths_m) {
   STILLMAP_CHECK(expected_depths_m.size() == detections.objects.size());
-  const MaskAreas areas = mask_areas(detections.mask);
+  MaskAreas areas = mask_areas(detections.mask);  // their numbers of pixels, before completion
   std::vector<bool> completed(detections.objects.size(), false);
   bool own = false;  // the mask's pixels may be shared with the caller
   const std::vector<std::size_t> order = order_of_completion(detections);
   for (std::size_t k = 0; k < order.size(); ++k) {
     const std::size_t i = order[k];
     DetectedObject& object = detections.objects[i];
-    const bool has_pixels = own ? cv::countNonZero(detections.mask.mat == object.id) > 0
-                                : areas[static_cast<std::size_t>(object.id)].pixels > 0;
+    const bool has_pixels = areas[static_cast<std::size_t>(object.id)].pixels > 0;
     if (has_pixels && object.pixel_source != PixelSource::kRoughNetwork) continue;
     const PixelPatch patch =
         has_pixels ? mask_refined_by_depth(depth, detections.mask, object)
@@ -143,14 +147,18 @@ std::vector<bool> complete_masks(FrameDetections& detections,
                                                  : cv::Mat1b(detections.mask.mat.clone()));
       own = true;
     }
-    const cv::Mat1b before = detections.mask.mat == object.id;
-    if (has_pixels) detections.mask.mat.setTo(0, before);
-    paint(detections.mask, patch, static_cast<std::uint8_t>(object.id));
+    const auto id = static_cast<std::uint8_t>(object.id);
     if (has_pixels) {
-      pass_on(detections.mask.mat, before, std::span(order).subspan(k + 1), detections.objects);
+      const cv::Mat1b before = detections.mask.mat == object.id;
+      detections.mask.mat.setTo(0, before);
+      paint(detections.mask, patch, id);
+      const auto others = std::span(order).subspan(k + 1);
+      pass_on(detections.mask.mat, before, others, detections.objects, areas);
+    } else {
+      paint(detections.mask, patch, id);
+      object.pixel_source = PixelSource::kDepth;
+      completed[i] = true;
     }
-    completed[i] = !has_pixels;
-    if (!has_pixels) object.pixel_source = PixelSource::kDepth;
   }
   return completed;
 }

@@ -183,6 +183,17 @@ TEST(CompleteMasks, PixelsOfSomebodyBehindGoToTheBoxThere) {
   EXPECT_GT(cv::countNonZero(found.mask.mat(far) == 2), 0.9 * far.area());
 }
 
+TEST(CompleteMasks, ABoxOutsideTheImageGetsNoPixels) {
+  FrameDetections found;
+  found.objects = {with_rough_mask(1, 0.9F), with_rough_mask(2, 0.5F)};
+  found.objects[1].box = {-500, -500, -10, -10};
+  found.mask = ObjectMask(cv::Mat1b(480, 640, std::uint8_t{0}));
+  found.mask.mat(cv::Rect(240, 60, 140, 240)).setTo(1);  // with the wall above
+  (void)complete_masks(found, room_with_thing(), {std::nullopt, std::nullopt});
+  EXPECT_EQ(cv::countNonZero(found.mask.mat == 2), 0);
+  EXPECT_GT(cv::countNonZero(found.mask.mat == 1), 0.9 * kThing.area());
+}
+
 TEST(CompleteMasks, GivesPixelsToBoxesAloneTheSurestFirst) {
   FrameDetections found;
   const PixelBox other{20, 20, 80, 80};
