@@ -91,7 +91,7 @@ function(stillmap_tests NAME)
   target_compile_definitions(${NAME}_test PRIVATE
     STILLMAP_SOURCE_DIR="${PROJECT_SOURCE_DIR}" STILLMAP_BINARY_DIR="${PROJECT_BINARY_DIR}")
   set_target_properties(${NAME}_test PROPERTIES
-    RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests UNITY_BUILD OFF)
+    RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests UNITY_BUILD_BATCH_SIZE 6)
   stillmap_discover_tests(${NAME})
 endfunction()
 

@@ -20,15 +20,13 @@
 namespace stillmap {
 namespace {
 
-constexpr double kPeriodS = 1 / 30.0;
-
 // A camera before the wall of live_runs.hpp. It gives nothing for some seconds after a third of the
 // frames, and is plugged out and in again after two thirds: its clock begins anew.
 std::deque<FakeDevice::Event> wall_events(double stall_s, double unplugged_s) {
   std::deque<FakeDevice::Event> events;
   double device_s = 20;
   for (std::uint32_t i = 0; i < kWallFrames; ++i) {
-    double after_s = kPeriodS;
+    double after_s = kWallPeriod_s;
     if (i == kWallFrames / 3) after_s += stall_s;
     device_s += after_s;
     if (i == 2 * kWallFrames / 3) {

@@ -27,8 +27,6 @@
 namespace stillmap {
 namespace {
 
-constexpr double kPeriodS = 1 / 30.0;
-
 /// Has each frame of the wall happen when it is waited for; time passes with it.
 class WallDevice : public Device {
  public:
@@ -42,7 +40,7 @@ class WallDevice : public Device {
     constexpr double kPatienceS = 30;
     if (ended()) return std::nullopt;
     happen_(next_++);
-    clock_.pass_s(kPeriodS);
+    clock_.pass_s(kWallPeriod_s);
     return device_.wait(kPatienceS);
   }
 

@@ -120,7 +120,7 @@ TEST_F(ExportSession, SaysThatThereIsNothingInIt) {
   session_.views.clear();
   save();
   expect_refused("map.stillmap --ply a.ply", "map.stillmap: no points");
-  session_.frames.clear();
+  session_.frames = {};
   save();
   expect_refused("map.stillmap --ply a.ply", "map.stillmap: no frame");
 }

@@ -111,6 +111,11 @@ ssize_t write(int fd, const void* bytes, size_t size) {
   return next<ssize_t (*)(int, const void*, size_t)>("write")(fd, bytes, size);
 }
 
+ssize_t pwrite(int fd, const void* bytes, size_t size, off_t offset) {
+  if (fails(ENOSPC)) return -1;
+  return next<ssize_t (*)(int, const void*, size_t, off_t)>("pwrite")(fd, bytes, size, offset);
+}
+
 int fsync(int fd) {
   return fails(EIO) ? -1 : next<int (*)(int)>("fsync")(fd);
 }

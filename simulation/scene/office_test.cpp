@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "simulation/scene/hash_random.hpp"
+#include "simulation/scene/roles.hpp"
 
 namespace stillmap {
 namespace {
@@ -34,13 +35,6 @@ Bounds bounds_of(const Thing& thing) {
 
 bool is_shell(const Thing& thing) {
   return thing.class_name == "wall" || thing.class_name == "floor" || thing.class_name == "ceiling";
-}
-
-const Thing& thing_named(const World& world, const std::string& name) {
-  for (const Thing& thing : world.things) {
-    if (thing.name == name) return thing;
-  }
-  throw std::runtime_error("no " + name);
 }
 
 TEST(Office, StaysWithinItsRoom) {

@@ -26,23 +26,23 @@ CameraModel camera() {
 }
 
 /// A thing whose front, at depth z, fills these pixels of a camera at the origin.
-struct Thing {
+struct FlatThing {
   cv::Rect pixels;
   float z;
   Rgb color;
 };
 
 const Rgb kWall{200, 200, 200}, kChair{0, 0, 250}, kPerson{250, 0, 0};
-const Thing kStandingPerson{{60, 20, 30, 80}, 1.5F, kPerson};
+const FlatThing kStandingPerson{{60, 20, 30, 80}, 1.5F, kPerson};
 
 /// What a camera at the origin sees of a wall at 3 m and things before it. Where `masked` has
 /// pixels a network has found somebody.
 class Scene {
  public:
-  void look(const std::vector<Thing>& things, const cv::Rect& masked = {}) {
+  void look(const std::vector<FlatThing>& things, const cv::Rect& masked = {}) {
     cv::Mat1f depth(120, 160, 3.0F);
     ColorImage color(cv::Mat3b(120, 160, cv::Vec3b(200, 200, 200)));
-    for (const Thing& thing : things) {
+    for (const FlatThing& thing : things) {
       depth(thing.pixels).setTo(thing.z);
       color.mat(thing.pixels).setTo(cv::Scalar(thing.color[0], thing.color[1], thing.color[2]));
     }
@@ -85,7 +85,7 @@ TEST(FreeSpace, WhatGoesAwayLeavesTheMap) {
 
 TEST(FreeSpace, WhatNobodySeesThroughStays) {
   Scene scene;
-  const Thing lamp{{10, 10, 20, 60}, 2.0F, {250, 250, 0}};
+  const FlatThing lamp{{10, 10, 20, 60}, 2.0F, {250, 250, 0}};
   for (int i = 0; i < 8; ++i) scene.look({lamp, kStandingPerson}, kStandingPerson.pixels);
   EXPECT_EQ(scene.count(kPerson, false), 0U);
   EXPECT_EQ(scene.count(lamp.color, true), scene.count(lamp.color, false));
@@ -94,8 +94,8 @@ TEST(FreeSpace, WhatNobodySeesThroughStays) {
 
 TEST(FreeSpace, AMovedChairIsThereOnceAtItsLastPlace) {
   Scene scene;
-  const Thing before{{20, 60, 30, 30}, 2.0F, kChair};
-  const Thing after{{100, 60, 30, 30}, 2.0F, {0, 0, 251}};
+  const FlatThing before{{20, 60, 30, 30}, 2.0F, kChair};
+  const FlatThing after{{100, 60, 30, 30}, 2.0F, {0, 0, 251}};
   for (int i = 0; i < 12; ++i) scene.look({before});
   for (int i = 0; i < 6; ++i) scene.look({after});
   EXPECT_GT(scene.count(before.color, false), 100U);
@@ -106,7 +106,7 @@ TEST(FreeSpace, AMovedChairIsThereOnceAtItsLastPlace) {
 
 TEST(FreeSpace, OneViewThatSeesThroughIsNotEnough) {
   Scene scene;
-  const Thing chair{{20, 60, 30, 30}, 2.0F, kChair};
+  const FlatThing chair{{20, 60, 30, 30}, 2.0F, kChair};
   for (int i = 0; i < 12; ++i) scene.look({chair});
   scene.look({});  // a wrong pose, say
   EXPECT_EQ(scene.count(kChair, true), scene.count(kChair, false));
@@ -123,8 +123,8 @@ TEST(FreeSpace, WhatIsMostlyKnownToMoveGoesThoughNobodySeesThrough) {
 
 TEST(FreeSpace, ALimbThatOneMaskHasMissedGoes) {
   Scene scene;
-  const Thing far_box{{130, 30, 20, 20}, 1.5F, {0, 250, 0}};  // alike, but away from anybody
-  const cv::Rect body(60, 20, 24, 80);                        // without the right 6 columns
+  const FlatThing far_box{{130, 30, 20, 20}, 1.5F, {0, 250, 0}};  // alike, but away from anybody
+  const cv::Rect body(60, 20, 24, 80);                            // without the right 6 columns
   scene.look({kStandingPerson, far_box}, body);
   EXPECT_GT(scene.count(kPerson, false), 100U);
   EXPECT_EQ(scene.count(kPerson, true), 0U);
@@ -133,7 +133,7 @@ TEST(FreeSpace, ALimbThatOneMaskHasMissedGoes) {
 
 TEST(FreeSpace, WhatIsSeenOnceWithoutAnybodyBesideItStays) {
   Scene scene;
-  const Thing lamp{{90, 30, 20, 20}, 1.6F, {0, 250, 0}};
+  const FlatThing lamp{{90, 30, 20, 20}, 1.6F, {0, 250, 0}};
   scene.look({kStandingPerson, lamp}, kStandingPerson.pixels);  // somebody beside it
   EXPECT_EQ(scene.count(lamp.color, true), 0U);
   scene.look({lamp});  // nobody

@@ -11,34 +11,34 @@
 namespace stillmap {
 namespace {
 
-constexpr std::uint8_t kChair = 57;  // COCO numbers the chair 56, from 0
-constexpr std::uint8_t kTv = 63;     // and the tv 62
+constexpr std::uint8_t kChairLabel = 57;  // COCO numbers the chair 56, from 0
+constexpr std::uint8_t kTvLabel = 63;     // and the tv 62
 
 TEST(ClassLabel, IsCocosNumberFromOne) {
   EXPECT_EQ(class_label("person"), 1);
-  EXPECT_EQ(class_label("chair"), kChair);
-  EXPECT_EQ(class_label("tv"), kTv);
-  EXPECT_EQ(class_label("tvmonitor"), kTv);
+  EXPECT_EQ(class_label("chair"), kChairLabel);
+  EXPECT_EQ(class_label("tv"), kTvLabel);
+  EXPECT_EQ(class_label("tvmonitor"), kTvLabel);
   EXPECT_EQ(class_label("toothbrush"), 80);
   EXPECT_EQ(class_label("desk"), 0);
 }
 
-struct Thing {
+struct LabelledThing {
   const char* class_name;
   cv::Rect area;
   float depth_m;
 };
 
 // Things before a wall 3 m away, all of it measured.
-struct Scene {
+struct LabelledScene {
   DepthImage depth{cv::Mat1f(240, 320, 3.0F)};
   FrameObjects objects;
 };
 
-Scene scene_of(const std::vector<Thing>& things) {
-  Scene scene;
+LabelledScene scene_of(const std::vector<LabelledThing>& things) {
+  LabelledScene scene;
   cv::Mat1b ids(240, 320, std::uint8_t{0});
-  for (const Thing& thing : things) {
+  for (const LabelledThing& thing : things) {
     TrackedObject object;
     object.detection.id = static_cast<int>(scene.objects.objects.size()) + 1;
     object.detection.class_name = thing.class_name;
@@ -56,7 +56,7 @@ Scene scene_of(const std::vector<Thing>& things) {
   return scene;
 }
 
-FrameDynamics judged(const Scene& scene) {
+FrameDynamics judged(const LabelledScene& scene) {
   DynamicsConfig config;
   config.mode = "full";
   RgbdFrame frame;
@@ -66,33 +66,33 @@ FrameDynamics judged(const Scene& scene) {
   return stage->judge(frame, scene.objects, stage->measure(frame, scene.objects), std::nullopt);
 }
 
-const Thing kPerson{"person", {100, 40, 60, 180}, 1.5F};
-const Thing kTouchedChair{"chair", {150, 120, 50, 100}, 1.5F};  // overlaps the person
-const Thing kChairApart{"chair", {240, 140, 50, 80}, 2.0F};
-const Thing kScreen{"tv", {10, 30, 60, 40}, 2.5F};
+const LabelledThing kSomebody{"person", {100, 40, 60, 180}, 1.5F};
+const LabelledThing kTouchedChair{"chair", {150, 120, 50, 100}, 1.5F};  // overlaps the person
+const LabelledThing kChairApart{"chair", {240, 140, 50, 80}, 2.0F};
+const LabelledThing kScreen{"tv", {10, 30, 60, 40}, 2.5F};
 
 TEST(LabelImage, HasStaticThingsAndNeverAPerson) {
-  const Scene scene = scene_of({kPerson, kTouchedChair, kChairApart, kScreen});
+  const LabelledScene scene = scene_of({kSomebody, kTouchedChair, kChairApart, kScreen});
   const FrameDynamics dynamics = judged(scene);
   ASSERT_TRUE(dynamics.judged.states[1].dynamic);
   ASSERT_FALSE(dynamics.judged.states[2].dynamic);
   cv::Mat1b expected(240, 320, std::uint8_t{0});
-  expected(kChairApart.area).setTo(kChair);
-  expected(kScreen.area).setTo(kTv);
+  expected(kChairApart.area).setTo(kChairLabel);
+  expected(kScreen.area).setTo(kTvLabel);
   EXPECT_EQ(cv::countNonZero(label_image(scene.depth, dynamics).mat != expected), 0);
 }
 
 TEST(LabelImage, HasAChairThatRestsThoughSomebodyIsAtIt) {
-  const Scene scene = scene_of({kPerson, kTouchedChair});
+  const LabelledScene scene = scene_of({kSomebody, kTouchedChair});
   FrameDynamics dynamics = judged(scene);
   dynamics.judged.mask.resting[2] = true;
   cv::Mat1b expected(240, 320, std::uint8_t{0});
-  expected(kTouchedChair.area).setTo(kChair);
+  expected(kTouchedChair.area).setTo(kChairLabel);
   EXPECT_EQ(cv::countNonZero(label_image(scene.depth, dynamics).mat != expected), 0);
 }
 
 TEST(LabelImage, LeavesOutWhatAMaskHasOfTheWallAndOfNoDepth) {
-  Scene scene = scene_of({kChairApart});
+  LabelledScene scene = scene_of({kChairApart});
   const cv::Rect wall(240, 140, 5, 80), hole(260, 150, 4, 4);
   scene.depth.mat(wall).setTo(3.0F);
   scene.depth.mat(hole).setTo(0.0F);
@@ -103,7 +103,7 @@ TEST(LabelImage, LeavesOutWhatAMaskHasOfTheWallAndOfNoDepth) {
 }
 
 TEST(LabelImage, ABoxInPlaceOfAMaskIsNoLabel) {
-  Scene scene = scene_of({kChairApart, kScreen});
+  LabelledScene scene = scene_of({kChairApart, kScreen});
   scene.objects.objects[0].mask_source = MaskSource::kBox;
   scene.objects.objects[1].mask_source = MaskSource::kCarried;
   const cv::Mat1b labels = label_image(scene.depth, judged(scene)).mat;
@@ -122,7 +122,7 @@ TEST(System, LabelsStaticObjectsInTheMap) {
   const SyntheticSequence sequence(options);
   const FramePtr frame = sequence.frame(FrameId(0));
   // Whatever is there, in two parts of the image, is called a person and a chair.
-  const Scene pretended =
+  const LabelledScene pretended =
       scene_of({{"person", {20, 60, 80, 120}, 0}, {"chair", {200, 90, 60, 90}, 0}});
   SystemConfig config;
   config.dynamics.mode = "mask";
@@ -135,7 +135,7 @@ TEST(System, LabelsStaticObjectsInTheMap) {
   for (std::size_t i = 0; i < done.map.size(); ++i) {
     if (done.map.labels[i] == 0) continue;
     ++labelled;
-    EXPECT_EQ(done.map.labels[i], kChair);
+    EXPECT_EQ(done.map.labels[i], kChairLabel);
     const Eigen::Vector2d px = options.camera.project(done.map.positions[i].cast<double>());
     outside += px.x() < 199 || px.x() > 261 || px.y() < 89 || px.y() > 181 ? 1 : 0;
   }

@@ -8,7 +8,7 @@
 namespace stillmap {
 namespace {
 
-constexpr double kFrame_s = 1.0 / 30;
+constexpr double kStep_s = 1.0 / 30;
 constexpr double kPerson_m = 2.0, kWall_m = 4.0;  // from the camera
 
 const CameraModel& camera() {
@@ -16,7 +16,7 @@ const CameraModel& camera() {
   return model;
 }
 
-std::vector<Eigen::Vector3d> person_at(double x_m) {
+std::vector<Eigen::Vector3d> standing_at(double x_m) {
   std::vector<Eigen::Vector3d> points;
   for (int i = 0; i < 8; ++i) {
     for (int j = 0; j < 16; ++j) points.emplace_back(x_m + 0.05 * i, 0.05 * j - 0.4, kPerson_m);
@@ -45,7 +45,8 @@ StaticView view_of_wall(bool with_person) {
 StandingPeople after_walk(double from_m, int stands) {
   StandingPeople people;
   for (int k = -30; k < stands; ++k) {
-    people.remember((30 + k) * kFrame_s, {{TrackId(1), person_at(k < 0 ? from_m * -k / 30.0 : 0)}});
+    people.remember((30 + k) * kStep_s,
+                    {{TrackId(1), standing_at(k < 0 ? from_m * -k / 30.0 : 0)}});
   }
   return people;
 }

@@ -14,7 +14,7 @@
 #include <unistd.h>
 
 #include "stillmap/core/error.hpp"
-#include "stillmap/io/descriptor.hpp"
+#include "stillmap/io/file_descriptor.hpp"
 #include "stillmap/io/file_moves.hpp"
 
 namespace stillmap {
@@ -37,14 +37,14 @@ class TemporaryFile {
 };
 
 void write_directly(const fs::path& path, std::string_view bytes) {
-  Descriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
+  FileDescriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
   if (file.get() < 0) throw Error("cannot write {}: {}", path.string(), error_text(errno));
   write_all(file, bytes, path);
   close_written(file, false, path);
 }
 
 struct OpenTemporary {
-  Descriptor file;
+  FileDescriptor file;
   fs::path path;
 };
 
@@ -56,7 +56,7 @@ OpenTemporary open_temporary(const fs::path& path) {
   for (int attempt = 0; attempt < 1000; ++attempt) {
     fs::path name = path;
     name += fmt::format(".tmp{}-{}", ::getpid(), next++);
-    Descriptor file(::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+    FileDescriptor file(::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
     if (file.get() >= 0) return {std::move(file), std::move(name)};
     if (errno != EEXIST) throw Error("cannot write {}: {}", path.string(), error_text(errno));
   }
@@ -158,7 +158,7 @@ void write_files_atomically(std::span<const FileContent> files) {
 }
 
 std::string read_file(const fs::path& path, std::size_t max_bytes) {
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   if (file.get() < 0) throw Error("cannot read {}: {}", path.string(), error_text(errno));
   struct stat status = {};
   if (::fstat(file.get(), &status) != 0) {

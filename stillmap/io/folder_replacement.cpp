@@ -14,7 +14,7 @@
 #include <unistd.h>
 
 #include "stillmap/core/error.hpp"
-#include "stillmap/io/descriptor.hpp"
+#include "stillmap/io/file_descriptor.hpp"
 #include "stillmap/io/file_moves.hpp"
 
 namespace stillmap {
@@ -101,8 +101,8 @@ void settle(const fs::path& folder, const fs::path& kept, const FolderReplacemen
 
 // Opens a folder and locks it until the descriptor is closed, at the latest by the end of the
 // process; nothing if it is locked or not there.
-std::optional<Descriptor> lock_folder(const fs::path& folder) {
-  Descriptor opened(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+std::optional<FileDescriptor> lock_folder(const fs::path& folder) {
+  FileDescriptor opened(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (opened.get() < 0) return std::nullopt;
   // Where the file system has no locks there are none.
   if (::flock(opened.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) return std::nullopt;
@@ -136,7 +136,7 @@ class FolderReplacement::Stage {
   fs::path staged_;   // the new files, in the folder
   fs::path sibling_;  // where they wait for the exchange
   Owns owns_;
-  std::optional<Descriptor> lock_;
+  std::optional<FileDescriptor> lock_;
 };
 
 FolderReplacement::Stage::Stage(const fs::path& folder, Owns owns)
@@ -148,7 +148,8 @@ FolderReplacement::Stage::Stage(const fs::path& folder, Owns owns)
   staged_ = target_ / kStageName;
   sibling_ = target_.parent_path() / fmt::format(".{}{}", target_.filename().string(), kStageName);
   for (const fs::path& left : {sibling_, staged_}) {  // by a process that was killed
-    if (const std::optional<Descriptor> locked = lock_folder(left)) settle(left, target_, owns_);
+    if (const std::optional<FileDescriptor> locked = lock_folder(left))
+      settle(left, target_, owns_);
   }
   const bool made = ::mkdir(staged_.c_str(), 0777) == 0;
   if (!made && errno != EEXIST) fail("", errno);
@@ -164,7 +165,7 @@ void FolderReplacement::Stage::write(const fs::path& name,
   std::error_code failure;
   fs::create_directories(path.parent_path(), failure);
   if (failure) throw Error("cannot write {}: {}", shown.string(), failure.message());
-  Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+  FileDescriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
   if (file.get() < 0) fail(name, errno);
   produce([&](std::string_view bytes) { write_all(file, bytes, shown); });
   close_written(file, false, shown);
@@ -189,7 +190,7 @@ void FolderReplacement::Stage::flush(const Listing& written) const {
     return;
   }
   for (const fs::path& name : written.files) {
-    Descriptor file(::open((staged_ / name).c_str(), O_RDONLY | O_CLOEXEC));
+    FileDescriptor file(::open((staged_ / name).c_str(), O_RDONLY | O_CLOEXEC));
     if (file.get() < 0) fail(name, errno);
     close_written(file, true, shown_ / name);
   }

@@ -21,7 +21,7 @@ using testing::HasSubstr;
 using Content = std::map<std::string, std::string>;  // of each file, by its name
 
 // Everything in a folder, hidden files included.
-Content content_of(const fs::path& folder) {
+Content files_of(const fs::path& folder) {
   Content content;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     if (entry.is_directory()) continue;
@@ -58,7 +58,7 @@ class FolderReplacementTest : public testing::Test {
   void replace(const fs::path& folder) const {
     FolderReplacement result(folder, is_own);
     write_new(result);
-    EXPECT_EQ(without_stage(content_of(out_)), old_);
+    EXPECT_EQ(without_stage(files_of(out_)), old_);
     result.take_place();
   }
   static void write_new(const FolderReplacement& result) {
@@ -97,13 +97,13 @@ class FolderReplacementTest : public testing::Test {
 };
 
 TEST_F(FolderReplacementTest, ReplacesAllAndKeepsWhatIsForeign) {
-  ASSERT_EQ(content_of(out_), old_);
+  ASSERT_EQ(files_of(out_), old_);
   fs::permissions(out_, fs::perms::owner_all | fs::perms::group_read);
   struct stat notes = {}, folder = {};
   ASSERT_EQ(::stat((out_ / "deep/er/notes.txt").c_str(), &notes), 0);
   ASSERT_EQ(::stat(out_.c_str(), &folder), 0);
   replace(out_);
-  EXPECT_EQ(content_of(out_), new_);
+  EXPECT_EQ(files_of(out_), new_);
   EXPECT_TRUE(fs::is_symlink(out_ / "link.pcd"));
   expect_only_out();
   struct stat after = {};
@@ -118,7 +118,7 @@ TEST_F(FolderReplacementTest, FollowsALinkToTheFolder) {
   fs::create_directory_symlink(out_, folder_.path() / "link");
   replace(folder_.path() / "link/");
   EXPECT_TRUE(fs::is_symlink(folder_.path() / "link"));
-  EXPECT_EQ(content_of(out_), new_);
+  EXPECT_EQ(files_of(out_), new_);
 }
 
 TEST_F(FolderReplacementTest, MakesANewFolder) {
@@ -130,7 +130,7 @@ TEST_F(FolderReplacementTest, MakesANewFolder) {
     EXPECT_TRUE(is_vacant(made));
     result.take_place();
   }
-  EXPECT_EQ(content_of(made), (Content{{"a.txt", "new a"}, {"masks/2.png", "new 2"}}));
+  EXPECT_EQ(files_of(made), (Content{{"a.txt", "new a"}, {"masks/2.png", "new 2"}}));
   EXPECT_FALSE(is_vacant(made));
   EXPECT_TRUE(is_vacant(folder_.path() / "none"));
 }
@@ -145,7 +145,7 @@ TEST_F(FolderReplacementTest, ReplacesTheWorkingFoldersFilesOneByOne) {
   ASSERT_EQ(::stat(out_.c_str(), &after), 0);
   fs::current_path(before);
   EXPECT_EQ(after.st_ino, folder.st_ino);
-  EXPECT_EQ(content_of(out_), new_);
+  EXPECT_EQ(files_of(out_), new_);
   expect_only_out();
 }
 
@@ -154,7 +154,7 @@ TEST_F(FolderReplacementTest, LeavesTheOldWhenGivenUp) {
     const FolderReplacement result(out_, is_own);
     write_new(result);
   }
-  EXPECT_EQ(content_of(out_), old_);
+  EXPECT_EQ(files_of(out_), old_);
   {
     const FolderReplacement result(out_, is_own);
     result.write("a.txt", "new a");
@@ -162,7 +162,7 @@ TEST_F(FolderReplacementTest, LeavesTheOldWhenGivenUp) {
     EXPECT_EQ(error_of([&] { result.write("b.txt", std::string(5000, 'x')); }),
               "cannot write " + (out_ / "b.txt").string() + ": File too large");
   }
-  EXPECT_EQ(content_of(out_), old_);
+  EXPECT_EQ(files_of(out_), old_);
   expect_only_out();
 }
 
@@ -172,7 +172,7 @@ TEST_F(FolderReplacementTest, NeverReplacesAFolderByAFile) {
   FolderReplacement result(out_, is_own);
   write_new(result);
   EXPECT_THAT(error_of([&] { result.take_place(); }), HasSubstr("a.txt: Is a directory"));
-  EXPECT_EQ(without_stage(content_of(out_)).at("a.txt/precious"), "of somebody");
+  EXPECT_EQ(without_stage(files_of(out_)).at("a.txt/precious"), "of somebody");
 }
 
 TEST_F(FolderReplacementTest, IsForOneAtATime) {
@@ -181,7 +181,7 @@ TEST_F(FolderReplacementTest, IsForOneAtATime) {
               HasSubstr("another process is writing results"));
   write_new(first);
   first.take_place();
-  EXPECT_EQ(content_of(out_), new_);
+  EXPECT_EQ(files_of(out_), new_);
 }
 
 // What a killed process leaves: new files that took no place, or old ones after the exchange, with
@@ -193,7 +193,7 @@ TEST_F(FolderReplacementTest, SettlesWhatAKilledProcessLeft) {
   put(folder_.path() / ".out.stillmap-new/late/photo.jpg", "came late");
   fs::create_hard_link(out_ / "map.pcd", folder_.path() / ".out.stillmap-new/map.pcd");
   { const FolderReplacement result(out_, is_own); }
-  EXPECT_EQ(content_of(out_), with(old_, {{"late/photo.jpg", "came late"}}));
+  EXPECT_EQ(files_of(out_), with(old_, {{"late/photo.jpg", "came late"}}));
   expect_only_out();
 }
 
@@ -218,7 +218,7 @@ TEST_F(FolderReplacementTest, IsWrittenByManyThreads) {
   }
   for (std::thread& thread : threads) thread.join();
   result.take_place();
-  const Content content = content_of(out_);
+  const Content content = files_of(out_);
   EXPECT_EQ(content.size(), foreign_.size() + 100);
   EXPECT_EQ(content.at("masks/324.png"), "324");
 }

@@ -7,17 +7,14 @@
 #include <string>
 #include <string_view>
 
+#include "stillmap/io/scratch_file.hpp"
+
 namespace stillmap {
 
-/// Records that are only needed at the end of a long run. All but the last few kB lie on the disk,
-/// in a file of TMPDIR (else /tmp) that has no name: nothing of it stays, however the process ends.
+/// Records that are only needed at the end of a long run. All but the last few kB lie in a
+/// ScratchFile.
 class ScratchRecords {
  public:
-  ScratchRecords();
-  ScratchRecords(const ScratchRecords&) = delete;
-  ScratchRecords& operator=(const ScratchRecords&) = delete;
-  ~ScratchRecords();
-
   /// Adds a record of less than 4 GB. Throws Error when the disk takes no more.
   void push_back(std::string_view record);
   /// Calls `visit` with each record, in order. Throws Error when they cannot be read back.
@@ -26,10 +23,8 @@ class ScratchRecords {
   [[nodiscard]] std::size_t buffered() const { return buffer_.size(); }
 
  private:
-  class File;
-
-  std::unique_ptr<File> file_;  // null until there are more bytes than the buffer takes
-  std::string buffer_;          // follows what is in the file
+  std::unique_ptr<ScratchFile> file_;  // null until there are more bytes than the buffer takes
+  std::string buffer_;                 // follows what is in the file
 };
 
 }  // namespace stillmap

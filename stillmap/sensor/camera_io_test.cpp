@@ -18,14 +18,14 @@ using ::testing::HasSubstr;
 
 constexpr const char* kGood = "width: 320\nheight: 240\nfx: 250.5\nfy: 251\ncx: 160\ncy: 1.2e2\n";
 
-CameraModel read(const std::string& text) {
+CameraModel read_yaml(const std::string& text) {
   const TemporaryFolder folder;
   write_file_atomically(folder.path() / "camera.yaml", text);
   return read_camera_yaml(folder.path() / "camera.yaml");
 }
 
-std::string error_for(const std::string& text) {
-  return error_of([&] { (void)read(text); });
+std::string yaml_error(const std::string& text) {
+  return error_of([&] { (void)read_yaml(text); });
 }
 
 CameraModel read_truth(const std::string& text) {
@@ -35,7 +35,7 @@ CameraModel read_truth(const std::string& text) {
 }
 
 TEST(ReadCameraYaml, ReadsTheKeysAndDefaultsTheRest) {
-  const CameraModel camera = read(std::string(kGood) + "k2: -0.25\n");
+  const CameraModel camera = read_yaml(std::string(kGood) + "k2: -0.25\n");
   EXPECT_EQ(camera.name, "camera");
   EXPECT_EQ(camera.width_px, 320);
   EXPECT_EQ(camera.height_px, 240);
@@ -53,7 +53,7 @@ TEST(ReadCameraYaml, GivesBackWhatFormatWrote) {
     CameraModel camera = builtin_camera(name);
     camera.name = "a \"quoted\": name # of " + name;
     camera.fx += 1.0 / 3.0;
-    const CameraModel read_back = read(format_camera_yaml(camera));
+    const CameraModel read_back = read_yaml(format_camera_yaml(camera));
     EXPECT_EQ(read_back.name, camera.name);
     EXPECT_EQ(read_back.width_px, camera.width_px);
     EXPECT_EQ(read_back.height_px, camera.height_px);
@@ -85,7 +85,7 @@ TEST(ReadCameraYaml, GivesBackWideLensesAndTheDepthCamera) {
   depth.T_color_depth = Eigen::Translation3d(0.052, -1e-3, 1.0 / 3) *
                         Eigen::AngleAxisd(0.3, Eigen::Vector3d(1, 2, 3).normalized());
   camera.depth_camera = std::make_shared<DepthCamera>(depth);
-  const CameraModel read_back = read(format_camera_yaml(camera));
+  const CameraModel read_back = read_yaml(format_camera_yaml(camera));
   EXPECT_TRUE(same_lens(read_back, camera));
   ASSERT_NE(read_back.depth_camera, nullptr);
   EXPECT_TRUE(same_lens(read_back.depth_camera->camera, depth.camera));
@@ -97,40 +97,41 @@ TEST(ReadCameraYaml, ReadsTheDepthCamera) {
   const std::string depth = std::string(kGood) +
                             "depth:\n  width: 160\n  height: 120\n  fx: 125\n  fy: 126\n"
                             "  cx: 80\n  cy: 60\n  k1: 0.5\n";
-  EXPECT_TRUE(read(depth).depth_camera->T_color_depth.isApprox(Eigen::Isometry3d::Identity(), 0));
+  EXPECT_TRUE(
+      read_yaml(depth).depth_camera->T_color_depth.isApprox(Eigen::Isometry3d::Identity(), 0));
   // A quarter turn about z takes x to y.
-  const CameraModel turned = read(depth +
-                                  "  rotation: [0, 0, 0.70710678, 0.70710678]\n"
-                                  "  translation: [0.025, 0, -0.001]\n");
+  const CameraModel turned = read_yaml(depth +
+                                       "  rotation: [0, 0, 0.70710678, 0.70710678]\n"
+                                       "  translation: [0.025, 0, -0.001]\n");
   const Eigen::Vector3d p = turned.depth_camera->T_color_depth * Eigen::Vector3d(1, 0, 0);
   EXPECT_LT((p - Eigen::Vector3d(0.025, 1, -0.001)).norm(), 1e-9);
   EXPECT_EQ(turned.depth_camera->camera.k1, 0.5);
-  const CameraModel by_rows = read(depth + "  rotation: [0, -1, 0, 1, 0, 0, 0, 0, 1]\n");
+  const CameraModel by_rows = read_yaml(depth + "  rotation: [0, -1, 0, 1, 0, 0, 0, 0, 1]\n");
   EXPECT_LT(
       (by_rows.depth_camera->T_color_depth * Eigen::Vector3d(1, 0, 0) - Eigen::Vector3d(0, 1, 0))
           .norm(),
       1e-12);
-  EXPECT_THAT(error_for(depth + "  rotation: [0, 0, 0, 2]\n"),
+  EXPECT_THAT(yaml_error(depth + "  rotation: [0, 0, 0, 2]\n"),
               AllOf(HasSubstr("camera.yaml:15"), HasSubstr("quaternion")));
-  EXPECT_THAT(error_for(depth + "  rotation: [1, 0, 0, 0, 1, 0, 0, 0, -1]\n"),
+  EXPECT_THAT(yaml_error(depth + "  rotation: [1, 0, 0, 0, 1, 0, 0, 0, -1]\n"),
               HasSubstr("depth.rotation"));
-  EXPECT_THAT(error_for(depth + "  translation: [1, 2]\n"), HasSubstr("2 numbers, expected 3"));
-  EXPECT_THAT(error_for(depth + "  fz: 2\n"), HasSubstr("camera.yaml:15: unknown key 'depth.fz'"));
-  EXPECT_THAT(error_for(std::string(kGood) + "depth:\n  width: 160\n"),
+  EXPECT_THAT(yaml_error(depth + "  translation: [1, 2]\n"), HasSubstr("2 numbers, expected 3"));
+  EXPECT_THAT(yaml_error(depth + "  fz: 2\n"), HasSubstr("camera.yaml:15: unknown key 'depth.fz'"));
+  EXPECT_THAT(yaml_error(std::string(kGood) + "depth:\n  width: 160\n"),
               HasSubstr("missing depth.height, depth.fx, depth.fy, depth.cx, depth.cy"));
 }
 
 TEST(ReadCameraYaml, SaysWhetherADepthFactorWasGiven) {
-  EXPECT_FALSE(read(kGood).depth_factor_given);
-  EXPECT_TRUE(read(std::string(kGood) + "depth_factor: 1000\n").depth_factor_given);
+  EXPECT_FALSE(read_yaml(kGood).depth_factor_given);
+  EXPECT_TRUE(read_yaml(std::string(kGood) + "depth_factor: 1000\n").depth_factor_given);
 }
 
 TEST(ReadCameraYaml, ReadsTheLens) {
-  const CameraModel fish = read(std::string(kGood) + "lens: fisheye\nk4: 0.1\n");
+  const CameraModel fish = read_yaml(std::string(kGood) + "lens: fisheye\nk4: 0.1\n");
   EXPECT_EQ(fish.lens, LensModel::kFisheye);
   EXPECT_EQ(fish.k4, 0.1);
-  EXPECT_THAT(error_for(std::string(kGood) + "lens: fish\n"), HasSubstr("camera.yaml:7: lens"));
-  EXPECT_THAT(error_for(std::string(kGood) + "lens: fisheye\np1: 0.1\n"), HasSubstr("k1 to k4"));
+  EXPECT_THAT(yaml_error(std::string(kGood) + "lens: fish\n"), HasSubstr("camera.yaml:7: lens"));
+  EXPECT_THAT(yaml_error(std::string(kGood) + "lens: fisheye\np1: 0.1\n"), HasSubstr("k1 to k4"));
 }
 
 TEST(CameraByName, TakesAnyFileThatIsThere) {
@@ -149,38 +150,39 @@ TEST(CameraByName, TakesAnyFileThatIsThere) {
 }
 
 TEST(ReadCameraYaml, RefusesAnUnknownKeyWithItsLineAndTheNearest) {
-  EXPECT_THAT(error_for(std::string(kGood) + "depth_facto: 1000\n"),
+  EXPECT_THAT(yaml_error(std::string(kGood) + "depth_facto: 1000\n"),
               AllOf(HasSubstr("camera.yaml:7"), HasSubstr("did you mean 'depth_factor'?")));
-  EXPECT_THAT(error_for(std::string(kGood) + "k7: 1\n"),
+  EXPECT_THAT(yaml_error(std::string(kGood) + "k7: 1\n"),
               AllOf(HasSubstr("unknown key 'k7': known: "), HasSubstr("k1, k2, p1, p2")));
 }
 
 TEST(ReadCameraYaml, RefusesValuesThatCannotBe) {
   const std::string good = kGood;
-  EXPECT_THAT(error_for(good + "k1: .nan\n"), HasSubstr("camera.yaml:7: k1 is '.nan'"));
-  EXPECT_THAT(error_for(good + "k1: inf\n"), HasSubstr("finite"));
-  EXPECT_THAT(error_for(good + "k1: 1,5\n"), HasSubstr("finite number"));
-  EXPECT_THAT(error_for(good + "k1: [1]\n"), HasSubstr("one value for each key"));
-  EXPECT_THAT(error_for(good + "k1:\n"), HasSubstr("camera.yaml:7: expected one value"));
-  EXPECT_THAT(error_for(good + "depth_factor: 0\n"), HasSubstr("positive"));
-  EXPECT_THAT(error_for(good + "fx: 3\n"), HasSubstr("fx is given twice"));
-  EXPECT_THAT(error_for("width: 0\nheight: 2\nfx: 1\nfy: 1\ncx: 1\ncy: 1\n"), HasSubstr("width"));
-  EXPECT_THAT(error_for("width: 2\nheight: 9000\nfx: 1\nfy: 1\ncx: 1\ncy: 1\n"),
+  EXPECT_THAT(yaml_error(good + "k1: .nan\n"), HasSubstr("camera.yaml:7: k1 is '.nan'"));
+  EXPECT_THAT(yaml_error(good + "k1: inf\n"), HasSubstr("finite"));
+  EXPECT_THAT(yaml_error(good + "k1: 1,5\n"), HasSubstr("finite number"));
+  EXPECT_THAT(yaml_error(good + "k1: [1]\n"), HasSubstr("one value for each key"));
+  EXPECT_THAT(yaml_error(good + "k1:\n"), HasSubstr("camera.yaml:7: expected one value"));
+  EXPECT_THAT(yaml_error(good + "depth_factor: 0\n"), HasSubstr("positive"));
+  EXPECT_THAT(yaml_error(good + "fx: 3\n"), HasSubstr("fx is given twice"));
+  EXPECT_THAT(yaml_error("width: 0\nheight: 2\nfx: 1\nfy: 1\ncx: 1\ncy: 1\n"), HasSubstr("width"));
+  EXPECT_THAT(yaml_error("width: 2\nheight: 9000\nfx: 1\nfy: 1\ncx: 1\ncy: 1\n"),
               HasSubstr("height is 9000, expected 1 to 8192"));
-  EXPECT_THAT(error_for("width: 2.5\nheight: 2\nfx: 1\nfy: 1\ncx: 1\ncy: 1\n"),
+  EXPECT_THAT(yaml_error("width: 2.5\nheight: 2\nfx: 1\nfy: 1\ncx: 1\ncy: 1\n"),
               HasSubstr("whole number"));
-  EXPECT_THAT(error_for("width: 2\nheight: 2\nfx: -1\nfy: 1\ncx: 1\ncy: 1\n"),
+  EXPECT_THAT(yaml_error("width: 2\nheight: 2\nfx: -1\nfy: 1\ncx: 1\ncy: 1\n"),
               HasSubstr("fx is -1, expected a positive number"));
 }
 
 TEST(ReadCameraYaml, RefusesWhatIsNoCamera) {
-  EXPECT_THAT(error_for("width: 320\nfx: 1\n"), HasSubstr("missing height, fy, cx, cy"));
-  EXPECT_THAT(error_for(""), HasSubstr("not a camera"));
-  EXPECT_THAT(error_for("- 1\n- 2\n"), HasSubstr("not a camera"));
-  EXPECT_THAT(error_for("fx: 1\nfy: [1, 2\n"), AllOf(HasSubstr("camera.yaml:"), HasSubstr("YAML")));
-  EXPECT_THAT(error_for(std::string(100000, '[')), HasSubstr("camera.yaml"));
+  EXPECT_THAT(yaml_error("width: 320\nfx: 1\n"), HasSubstr("missing height, fy, cx, cy"));
+  EXPECT_THAT(yaml_error(""), HasSubstr("not a camera"));
+  EXPECT_THAT(yaml_error("- 1\n- 2\n"), HasSubstr("not a camera"));
+  EXPECT_THAT(yaml_error("fx: 1\nfy: [1, 2\n"),
+              AllOf(HasSubstr("camera.yaml:"), HasSubstr("YAML")));
+  EXPECT_THAT(yaml_error(std::string(100000, '[')), HasSubstr("camera.yaml"));
   // The library of YAML takes a zero for an escape character and quotes the line end after it.
-  EXPECT_THAT(error_for(std::string("fx: 1\0\n", 7)), HasSubstr("not YAML"));
+  EXPECT_THAT(yaml_error(std::string("fx: 1\0\n", 7)), HasSubstr("not YAML"));
 }
 
 TEST(ReadTruthCamera, ReadsTheCameraAndIgnoresTheRest) {

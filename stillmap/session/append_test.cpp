@@ -43,7 +43,8 @@ TEST_F(Append, KeepsTheFirstAsItIs) {
   Session start = both_;
   start.map = first_.map;
   start.loops.resize(first_.loops.size());
-  start.frames.resize(first_.frames.size());
+  start.frames = {};
+  for (std::size_t i = 0; i < first_.frames.size(); ++i) start.frames.push_back(both_.frames[i]);
   start.views.resize(first_.views.size());
   start.objects.resize(first_.objects.size());
   expect_same(start, first_);
@@ -113,7 +114,7 @@ TEST_F(Append, NewOnesComeAfterAll) {
 TEST_F(Append, FramesAndViewsOfTheSecondStandWhereTheyStood) {
   ASSERT_EQ(both_.frames.size(), 18U);
   for (std::size_t i = 0; i < 9; ++i) {
-    const FrameRecord &before = second_.frames[i], &after = both_.frames[i + 9];
+    const FrameRecord before = second_.frames[i], after = both_.frames[i + 9];
     EXPECT_EQ(after.reference.value, before.reference.value + 6);
     EXPECT_EQ(after.stamp.text, before.stamp.text);
     EXPECT_EQ(after.stamp.seconds, before.stamp.seconds);

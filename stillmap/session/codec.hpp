@@ -46,8 +46,8 @@ using DroppedKeyframes = std::vector<std::pair<KeyframeId, Anchor>>;
 [[nodiscard]] ByteWriter encode(const std::vector<LoopEdge>& loops);
 [[nodiscard]] std::vector<LoopEdge> decode_loops(ByteReader content);
 
-[[nodiscard]] ByteWriter encode(const std::vector<FrameRecord>& frames);
-[[nodiscard]] std::vector<FrameRecord> decode_frames(ByteReader content);
+[[nodiscard]] ByteWriter encode(const FrameRecords& frames);
+[[nodiscard]] FrameRecords decode_frames(ByteReader content);
 
 [[nodiscard]] ByteWriter encode(const ViewRecord& record);
 [[nodiscard]] ViewRecord decode_view(ByteReader content);

@@ -163,10 +163,10 @@ std::vector<LoopEdge> decode_loops(ByteReader content) {
   return loops;
 }
 
-ByteWriter encode(const std::vector<FrameRecord>& frames) {
+ByteWriter encode(const FrameRecords& frames) {
   ByteWriter out;
   out.count(frames.size());
-  for (const FrameRecord& frame : frames) {
+  for (const FrameRecord frame : frames) {
     put(out, frame.stamp);
     out.number(frame.reference.value);
     out.pose(frame.T_reference_frame);
@@ -174,12 +174,14 @@ ByteWriter encode(const std::vector<FrameRecord>& frames) {
   return out;
 }
 
-std::vector<FrameRecord> decode_frames(ByteReader content) {
-  std::vector<FrameRecord> frames(content.count(16 + kPoseSize));
-  for (FrameRecord& frame : frames) {
+FrameRecords decode_frames(ByteReader content) {
+  FrameRecords frames;
+  for (std::size_t left = content.count(16 + kPoseSize); left > 0; --left) {
+    FrameRecord frame;
     frame.stamp = take_stamp(content);
     frame.reference = take_id<KeyframeId>(content);
     frame.T_reference_frame = content.pose();
+    frames.push_back(std::move(frame));
   }
   content.finish();
   return frames;

@@ -10,18 +10,11 @@
 #include "stillmap/dense/static_view.hpp"
 #include "stillmap/geometry/camera.hpp"
 #include "stillmap/perception/objects/object_identities.hpp"
+#include "stillmap/session/frame_records.hpp"
 #include "stillmap/slam/loop/loop_match.hpp"
 #include "stillmap/slam/map/map.hpp"
 
 namespace stillmap {
-
-/// The pose of a tracked frame relative to a key frame, so that later optimisation moves it. The
-/// key frame may have been removed since.
-struct FrameRecord {
-  Stamp stamp;
-  KeyframeId reference;
-  Eigen::Isometry3d T_reference_frame = Eigen::Isometry3d::Identity();
-};
 
 /// The view of a recorded frame.
 struct ViewRecord {
@@ -37,8 +30,8 @@ struct Session {
   std::string config_yaml;  ///< the settings of the run
   Map map = Map({});
   std::vector<LoopEdge> loops;
-  std::vector<FrameRecord> frames;  ///< in the order of tracking
-  std::vector<ViewRecord> views;    ///< by frame, ascending
+  FrameRecords frames;            ///< in the order of tracking
+  std::vector<ViewRecord> views;  ///< by frame, ascending
   /// By track, in the world frame of the submap with most of the frames.
   std::vector<KnownObject> objects = {};
 };

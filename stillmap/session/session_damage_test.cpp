@@ -133,7 +133,13 @@ TEST(SessionDamage, WrongRecordsAreRefused) {
     change(changed);
     s.views[1].view = std::make_shared<const StaticView>(std::move(changed));
   };
+  const auto frame = [](Session& s, const std::function<void(FrameRecord&)>& change) {
+    FrameRecord changed = s.frames[2];
+    change(changed);
+    s.frames.set(2, std::move(changed));
+  };
   using S = Session&;
+  using F = FrameRecord&;
   const std::vector<Wrong> wrongs = {
       {"fx", [](S s) { s.camera.fx = 0; }},
       {"width", [](S s) { s.camera.width_px = 10000; }},
@@ -142,10 +148,10 @@ TEST(SessionDamage, WrongRecordsAreRefused) {
       {"loop 1: its key frames", [](S s) { s.loops[1].b = KeyframeId(9); }},
       {"loop 1: its pose", [](S s) { s.loops[1].T_a_b(0, 0) += 1; }},
       {"loop 1: its pose", [](S s) { s.loops[1].sigma_rad = 0; }},
-      {"frame 2: its stamp", [](S s) { s.frames[2].stamp.text = "1 2"; }},
-      {"frame 2: its stamp", [](S s) { s.frames[2].stamp.seconds = NAN; }},
-      {"frame 2: its key frame", [](S s) { s.frames[2].reference = KeyframeId(5); }},
-      {"frame 2: its pose", [](S s) { s.frames[2].T_reference_frame(0, 0) = 3; }},
+      {"frame 2: its stamp", [&](S s) { frame(s, [](F f) { f.stamp.text = "1 2"; }); }},
+      {"frame 2: its stamp", [&](S s) { frame(s, [](F f) { f.stamp.seconds = NAN; }); }},
+      {"frame 2: its key frame", [&](S s) { frame(s, [](F f) { f.reference = KeyframeId(5); }); }},
+      {"frame 2: its pose", [&](S s) { frame(s, [](F f) { f.T_reference_frame(0, 0) = 3; }); }},
       {"view 1: its frame", [](S s) { s.views[1].frame = 5; }},
       {"view 1: its frame", [](S s) { s.views[1].frame = s.views[0].frame; }},
       {"view 1: it is empty", [](S s) { s.views[1].view = nullptr; }},

@@ -47,8 +47,10 @@ TEST(SessionIo, WhatIsReadIsWhatWasWritten) {
 
 TEST(SessionIo, UnusualNumbersKeepTheirBits) {
   Session session = random_session(1);
-  session.frames[0].T_reference_frame =
+  FrameRecord unusual = session.frames[0];
+  unusual.T_reference_frame =
       Eigen::Isometry3d(Eigen::Translation3d(-0.0, std::numeric_limits<double>::denorm_min(), 0.1));
+  session.frames.set(0, unusual);
   const Session read = decode_session(encode_session(session), "x");
   const Eigen::Vector3d t = read.frames[0].T_reference_frame.translation();
   EXPECT_TRUE(std::signbit(t.x()));
@@ -145,7 +147,9 @@ TEST(SessionIo, WhatCouldNotBeReadIsNotWritten) {
   const std::filesystem::path path = folder.path() / "map.stillmap";
   write_file_atomically(path, "old");
   Session session = random_session(5);
-  session.frames[2].T_reference_frame(0, 0) = std::numeric_limits<double>::quiet_NaN();
+  FrameRecord broken = session.frames[2];
+  broken.T_reference_frame(0, 0) = std::numeric_limits<double>::quiet_NaN();
+  session.frames.set(2, broken);
   EXPECT_THAT(error_of([&] { write_session(path, session); }),
               HasSubstr("cannot write " + path.string() + ": invalid frame 2: its pose"));
   EXPECT_EQ(read_file(path, 100), "old");

@@ -20,7 +20,7 @@ Eigen::Isometry3d T_world_view(const Session& session,
   const int side = view.depth_after_color_s > 0 ? 1 : -1;
   for (const int step : {side, -side}) {
     const std::int64_t i = static_cast<std::int64_t>(view.frame) + step;
-    if (i < 0 || i >= std::ssize(session.frames)) continue;
+    if (i < 0 || i >= static_cast<std::int64_t>(session.frames.size())) continue;
     const auto neighbor = static_cast<std::size_t>(i);
     const double gap_s = session.frames[neighbor].stamp.seconds - stamp_s;
     if (gap_s * step <= 0 || gap_s * step > kMaxGap_s) continue;
@@ -42,8 +42,8 @@ SubmapId submap_of(const Session& session, const FrameRecord& frame) {
 
 SubmapId main_submap(const Session& session, std::size_t first_frame) {
   std::map<SubmapId, std::size_t> frames;
-  for (std::size_t i = first_frame; i < session.frames.size(); ++i) {
-    ++frames[submap_of(session, session.frames[i])];
+  for (auto frame = session.frames.from(first_frame); frame != session.frames.end(); ++frame) {
+    ++frames[submap_of(session, *frame)];
   }
   // The first of equal maxima in the sorted map: the lowest submap.
   const auto most = std::ranges::max_element(
@@ -53,8 +53,8 @@ SubmapId main_submap(const Session& session, std::size_t first_frame) {
 
 Trajectory trajectory_in(const Session& session, SubmapId submap, std::size_t first_frame) {
   Trajectory trajectory;
-  for (std::size_t i = first_frame; i < session.frames.size(); ++i) {
-    const FrameRecord& frame = session.frames[i];
+  for (auto at = session.frames.from(first_frame); at != session.frames.end(); ++at) {
+    const FrameRecord frame = *at;
     if (submap_of(session, frame) != submap) continue;
     trajectory.push_back({frame.stamp, T_world_frame(session, frame)});
   }
@@ -71,7 +71,7 @@ Trajectory keyframes_in(const Session& session, SubmapId submap) {
 
 std::vector<PosedView> posed_views(const Session& session, SubmapId submap) {
   return posed_views(session, [&](std::size_t i) -> std::optional<Eigen::Isometry3d> {
-    const FrameRecord& frame = session.frames[i];
+    const FrameRecord frame = session.frames[i];
     if (submap_of(session, frame) != submap) return std::nullopt;
     return T_world_frame(session, frame);
   });

@@ -118,18 +118,19 @@ TEST_F(SessionMap, ViewStandsWhereTheCameraWasWhenItsDepthWasTaken) {
     return posed_views(session_, SubmapId(0)).at(0).T_world_camera.translation().x();
   };
   for (int i = 0; i < 3; ++i) {
-    add_frame(0, at(0.1 * i));
-    session_.frames.back().stamp.seconds = 5 + 0.1 * i;
+    session_.frames.push_back({{5 + 0.1 * i, ""}, KeyframeId(0), at(0.1 * i)});
   }
   EXPECT_EQ(x_of_view(1, 0), 1.1);
   EXPECT_NEAR(x_of_view(1, 0.02), 1.12, 1e-9);
   EXPECT_NEAR(x_of_view(1, -0.02), 1.08, 1e-9);
   EXPECT_NEAR(x_of_view(2, 0.02), 1.22, 1e-9) << "goes on as since the frame before";
   EXPECT_NEAR(x_of_view(0, -0.02), 0.98, 1e-9);
-  session_.frames[1].reference = KeyframeId(1);  // of another submap
+  const FrameRecord second = session_.frames[1], third = session_.frames[2];
+  session_.frames.set(
+      1, {second.stamp, KeyframeId(1), second.T_reference_frame});  // of another submap
   EXPECT_EQ(x_of_view(0, 0.02), 1.0) << "the motion is not known";
-  session_.frames[1].reference = KeyframeId(0);
-  session_.frames[2].stamp.seconds = 9;
+  session_.frames.set(1, second);
+  session_.frames.set(2, {{9, ""}, third.reference, third.T_reference_frame});
   EXPECT_NEAR(x_of_view(1, 0.02), 1.12, 1e-9) << "the next frame is too late to tell";
 }
 

@@ -69,13 +69,14 @@ void check_loops(const SessionParts& parts, const std::string& place) {
 }
 
 void check_frames(const SessionParts& parts, const std::string& place) {
-  for (std::size_t i = 0; i < parts.frames.size(); ++i) {
-    const FrameRecord& frame = parts.frames[i];
+  std::size_t i = 0;
+  for (const FrameRecord frame : parts.frames) {
     const char* problem = !is_stamp(frame.stamp)                  ? "its stamp"
                           : !is_known(parts.map, frame.reference) ? "its key frame"
                           : !is_rigid(frame.T_reference_frame)    ? "its pose"
                                                                   : nullptr;
     if (problem != nullptr) throw Error("{}: invalid frame {}: {}", place, i, problem);
+    ++i;
   }
 }
 

@@ -15,7 +15,7 @@ struct SessionParts {
   std::string config_yaml;
   MapParts map;
   std::vector<LoopEdge> loops;
-  std::vector<FrameRecord> frames;
+  FrameRecords frames;
   std::vector<ViewRecord> views;
   std::vector<KnownObject> objects;
 };

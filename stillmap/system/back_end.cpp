@@ -126,12 +126,13 @@ KeyframeId BackEnd::insert_keyframe(const RgbdFrame& frame,
 void BackEnd::smooth_velocity(const Keyframe& keyframe) {
   const double stamp_s = keyframe.stamp.seconds;
   std::vector<TimedMotion> motions;
-  for (auto frame = session_.frames.rbegin(); frame != session_.frames.rend(); ++frame) {
-    const double after_s = frame->stamp.seconds - stamp_s;
+  for (std::size_t i = session_.frames.size(); i > 0; --i) {
+    const FrameRecord frame = session_.frames[i - 1];
+    const double after_s = frame.stamp.seconds - stamp_s;
     if (after_s < -kAround_s) break;
     if (after_s > kAround_s) continue;
     motions.push_back(
-        {after_s, keyframe.T_world_camera.inverse() * T_world_frame(session_, *frame)});
+        {after_s, keyframe.T_world_camera.inverse() * T_world_frame(session_, frame)});
   }
   if (motions.size() < 2) return;
   FrameTiming timing = keyframe.timing;
@@ -151,7 +152,7 @@ std::size_t BackEnd::record(const RgbdFrame& frame, const TrackedFrame& tracked)
 }
 
 void BackEnd::refer_to_keyframe(std::size_t record, KeyframeId keyframe) {
-  session_.frames[record] = {session_.frames[record].stamp, keyframe};
+  session_.frames.set(record, {session_.frames[record].stamp, keyframe});
 }
 
 void BackEnd::finish() {

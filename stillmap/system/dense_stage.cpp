@@ -60,7 +60,7 @@ void DenseStage::leave_out_missed(ViewRecord& made,
                                   const Session& session,
                                   const Eigen::Isometry3d& T_odometry_world) {
   if (config_.missed_people != "on") return;
-  const FrameRecord& frame = session.frames[made.frame];
+  const FrameRecord frame = session.frames[made.frame];
   const Eigen::Isometry3d T_camera_odometry =
       (T_odometry_world * T_world_frame(session, frame)).inverse();
   std::vector<Eigen::Vector3d> places =
@@ -84,7 +84,7 @@ void DenseStage::collect_due(Session& session,
 
 void DenseStage::keep_if_worth(Session& session, ViewRecord made) const {
   if (config_.views.enough > 0) {
-    const FrameRecord& frame = session.frames[made.frame];
+    const FrameRecord frame = session.frames[made.frame];
     const PosedView view{T_world_frame(session, frame), made.view.get()};
     const std::vector<PosedView> held = posed_views(session, submap_of(session, frame));
     const ViewGain gain = gain_of(view, held, camera_, config_.views, config_.free);

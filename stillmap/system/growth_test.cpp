@@ -20,25 +20,18 @@
 namespace stillmap {
 namespace {
 
-constexpr std::uint32_t kFrames = 60;  // one way
-
-const RenderedRoom& room() {
-  static const RenderedRoom kRoom(kFrames);
-  return kRoom;
-}
-
 std::uint32_t at_step(std::uint32_t step) {
-  const std::uint32_t at = step % (2 * (kFrames - 1));
-  return at < kFrames ? at : 2 * (kFrames - 1) - at;
+  const std::uint32_t at = step % (2 * (kRoomFrames - 1));
+  return at < kRoomFrames ? at : 2 * (kRoomFrames - 1) - at;
 }
 
 /// The surfaces that the camera has seen, in the coordinates of the first camera.
 MapTruth truth() {
-  const cv::Mat2f rays = pixel_rays(room().camera());
+  const cv::Mat2f rays = pixel_rays(empty_room().camera());
   PointCloud surface;
-  for (std::uint32_t k = 0; k < kFrames; k += 5) {
-    const Eigen::Isometry3d T = room().pose(0).inverse() * room().pose(k);
-    const SyntheticFrame rendered = room().sequence().render(FrameId(k));
+  for (std::uint32_t k = 0; k < kRoomFrames; k += 5) {
+    const Eigen::Isometry3d T = empty_room().pose(0).inverse() * empty_room().pose(k);
+    const SyntheticFrame rendered = empty_room().sequence().render(FrameId(k));
     const cv::Mat1f& depth = rendered.truth.depth.mat;
     for (int v = 0; v < depth.rows; ++v) {
       for (int u = 0; u < depth.cols; ++u) {
@@ -62,21 +55,22 @@ struct Outcome {
 };
 
 Outcome go(std::uint32_t ways, const SystemConfig& config) {
-  System system(config, room().camera(), {.threads = 1});
+  System system(config, empty_room().camera(), {.threads = 1});
   Outcome outcome;
   Trajectory ground_truth;
-  for (std::uint32_t step = 0; step < ways * kFrames; ++step) {
+  for (std::uint32_t step = 0; step < ways * kRoomFrames; ++step) {
     const std::uint32_t k = at_step(step);
-    RgbdFrame frame = *room().frame(k);
+    RgbdFrame frame = *empty_room().frame(k);
     frame.id = FrameId(step);
     frame.stamp = {1000 + step / 30.0, fmt::format("{:.6f}", 1000 + step / 30.0)};
-    ground_truth.push_back({frame.stamp, room().pose(k)});
+    ground_truth.push_back({frame.stamp, empty_room().pose(k)});
     const FrameResult result = system.process(std::make_shared<const RgbdFrame>(std::move(frame)));
     outcome.inserted += result.is_keyframe ? 1 : 0;
   }
   const RunResult result = system.finish();
   const std::optional<AteResult> ate = absolute_trajectory_error(ground_truth, result.trajectory);
-  outcome.ate_m = ate && result.trajectory.size() == ways * kFrames ? ate->translation_m.rmse : 1;
+  outcome.ate_m =
+      ate && result.trajectory.size() == ways * kRoomFrames ? ate->translation_m.rmse : 1;
   static const MapTruth kTruth = truth();
   outcome.map = map_quality(result.map, kTruth);
   const Session session = system.take_session();
@@ -110,8 +104,10 @@ const Outcome& early() {
   return kEarly;
 }
 
+constexpr std::uint32_t kWays = 7;
+
 const Outcome& late() {
-  static const Outcome kLate = go(10, settings());
+  static const Outcome kLate = go(kWays, settings());
   return kLate;
 }
 
@@ -119,7 +115,7 @@ TEST(Growth, ViewsStayAsManyWhereNothingNewIsSeen) {
   EXPECT_LE(late().views, early().views + 12);
   SystemConfig all = settings();
   all.cloud.views.enough = 0;
-  const Outcome with_all = go(10, all);
+  const Outcome with_all = go(kWays, all);
   EXPECT_GT(with_all.views, early().views + 60);
   // The map is about as good without the additional views, whose mean has a little less noise.
   EXPECT_GT(late().map.sa, with_all.map.sa - 0.002);
@@ -130,7 +126,7 @@ TEST(Growth, APlaceHasABoundedNumberOfViews) {
   SystemConfig bounded = settings();
   bounded.cloud.views.enough = 1000;  // so that none is ever known well
   bounded.cloud.views.most = 60;
-  const Outcome outcome = go(10, bounded);
+  const Outcome outcome = go(kWays, bounded);
   EXPECT_LE(outcome.views, 80U) << "162 without a bound; some see less than half of others";
   EXPECT_GT(outcome.map.sa, early().map.sa - 0.002);
   EXPECT_LT(*outcome.map.accuracy_m, 1.1 * *early().map.accuracy_m);
@@ -148,7 +144,7 @@ TEST(Growth, ViewsTakeNoMoreMemoryThanTheyMay) {
 TEST(Growth, KeyFramesDoNotComeOnlyToGoAgain) {
   SystemConfig always = settings();
   always.keyframe.max_known_share = 1;
-  const Outcome with_all = go(10, always);
+  const Outcome with_all = go(kWays, always);
   EXPECT_GT(with_all.inserted - early().inserted, 2 * (late().inserted - early().inserted));
   EXPECT_LT(late().ate_m, 1.1 * with_all.ate_m);
 }

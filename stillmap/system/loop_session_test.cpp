@@ -34,7 +34,7 @@ const RenderedRoom& office() {
   return kOffice;
 }
 
-SystemConfig settings(bool loops = true) {
+SystemConfig loop_settings(bool loops = true) {
   SystemConfig config;
   config.dynamics.mode = "off";
   config.loop.enabled = loops;
@@ -61,7 +61,7 @@ double error_m(const Trajectory& trajectory) {
 
 Session saved(System& system) {
   Session session = system.take_session();
-  SystemConfig config = settings();
+  SystemConfig config = loop_settings();
   session.config_yaml = dump_yaml(list_fields(config));
   return decode_session(encode_session(session), "map.stillmap");
 }
@@ -75,7 +75,7 @@ Round run(std::uint32_t begin,
           std::uint32_t end,
           bool loops = true,
           const SystemOptions& options = {.threads = 2}) {
-  System system(settings(loops), office().camera(), options);
+  System system(loop_settings(loops), office().camera(), options);
   process(system, begin, end);
   Round round{system.finish(), {}};
   system.map().check_consistency();
@@ -83,8 +83,14 @@ Round run(std::uint32_t begin,
   return round;
 }
 
+const Round& closed_round() {
+  static const Round kClosed = run(0, kEnd, true, {.threads = 1});
+  return kClosed;
+}
+
 TEST(LoopClosing, TakesTheDriftOfARoundAway) {
-  const Round open = run(0, kEnd, false), closed = run(0, kEnd);
+  const Round open = run(0, kEnd, false);
+  const Round& closed = closed_round();
   ASSERT_EQ(closed.result.trajectory.size(), kEnd / 2);
   EXPECT_TRUE(open.result.loops.empty());
   ASSERT_FALSE(closed.result.loops.empty());
@@ -102,7 +108,7 @@ TEST(LoopClosing, GivesTheSameBitsWithAnyNumberOfThreadsHoweverSlow) {
     ++adjustments;
     (void)std::promise<void>().get_future().wait_for(std::chrono::seconds(2));  // not set by anyone
   };
-  const Round one = run(0, kEnd, true, {.threads = 1});
+  const Round& one = closed_round();
   const Round four = run(0, kEnd, true, {.threads = 4, .probe = slow});
   EXPECT_GT(adjustments, 0);
   ASSERT_FALSE(one.result.loops.empty());
@@ -120,7 +126,7 @@ TEST(LoopClosing, HandsAnErrorOfTheAdjustmentOn) {
 
 TEST(SavedSession, IsTrackedAgainstWithOtherFrames) {
   const Round before = run(0, 160);
-  System system(settings(), office().camera(), {.threads = 2, .localize_only = true});
+  System system(loop_settings(), office().camera(), {.threads = 2, .localize_only = true});
   system.load(before.session);
   std::vector<double> errors_m;
   for (std::uint32_t k = 41; k < 160; k += 2) {
@@ -142,7 +148,7 @@ TEST(SavedSession, IsTrackedAgainstWithOtherFrames) {
 
 TEST(SavedSession, IsGoneOnFrom) {
   const Round before = run(0, 120);
-  System system(settings(), office().camera(), {.threads = 2});
+  System system(loop_settings(), office().camera(), {.threads = 2});
   system.load(before.session);
   process(system, 101, 200);
   const RunResult result = system.finish();
@@ -159,7 +165,7 @@ TEST(SavedSession, IsGoneOnFrom) {
 
 TEST(SavedSession, RefusesAnotherCamera) {
   const Round before = run(0, 20);
-  System system(settings(), synthetic_camera(640, 480), {.threads = 1});
+  System system(loop_settings(), synthetic_camera(640, 480), {.threads = 1});
   EXPECT_THROW(system.load(before.session), Error);
 }
 
@@ -190,7 +196,7 @@ TEST(MergedSessions, OfPlacesThatHaveNothingInCommonAreNone) {
 
 // After the camera was covered for long, it continues at an unknown place, in a new submap.
 TEST(Worlds, AreJoinedWhenAKnownPlaceIsSeenAgain) {
-  System system(settings(), office().camera(), {.threads = 2});
+  System system(loop_settings(), office().camera(), {.threads = 2});
   process(system, 0, 120);
   cover(system, 120, 150);
   process(system, 400, kEnd);
@@ -204,7 +210,7 @@ TEST(Worlds, AreJoinedWhenAKnownPlaceIsSeenAgain) {
 }
 
 TEST(Worlds, StayApartWithoutOne) {
-  System system(settings(), office().camera(), {.threads = 1});
+  System system(loop_settings(), office().camera(), {.threads = 1});
   process(system, 0, 120);
   cover(system, 120, 150);
   process(system, 300, 360);

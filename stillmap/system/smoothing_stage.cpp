@@ -33,7 +33,7 @@ std::vector<Stretch> stretches(const Session& session,
                                std::size_t count) {
   std::map<SubmapId, Stretch> by_submap;
   for (std::size_t i = 0; i < count; ++i) {
-    const FrameRecord& frame = session.frames[first_record + i];
+    const FrameRecord frame = session.frames[first_record + i];
     const Eigen::Isometry3d T_recorded = T_world_frame(session, frame);
     const bool defines_axes = is_identity(T_recorded);
     Eigen::Isometry3d T = T_recorded;
@@ -71,8 +71,9 @@ void SmoothingStage::add(const MeasuredFrame& frame) {
 void SmoothingStage::take_over(Session& session, std::int64_t frame_number) {
   for (const Corrections& corrections : jobs_.collect_due(frame_number)) {
     for (const auto& [record, T_before_after] : corrections) {
-      Eigen::Isometry3d& T = session.frames[record].T_reference_frame;
-      T = T * T_before_after;
+      FrameRecord frame = session.frames[record];
+      frame.T_reference_frame = frame.T_reference_frame * T_before_after;
+      session.frames.set(record, std::move(frame));
     }
   }
 }
@@ -103,8 +104,9 @@ void SmoothingStage::finish(Session& session, const CameraTimes& times) {
   for (const Stretch& part : stretches(session, first_record_, waiting_, times, waiting_.size())) {
     const std::vector<Eigen::Isometry3d> poses = smooth_trajectory(part.measured);
     for (std::size_t i = 0; i < poses.size(); ++i) {
-      FrameRecord& frame = session.frames[part.records[i]];
+      FrameRecord frame = session.frames[part.records[i]];
       frame.T_reference_frame = session.map.T_world_keyframe(frame.reference).inverse() * poses[i];
+      session.frames.set(part.records[i], std::move(frame));
     }
   }
   first_record_ += waiting_.size();

@@ -27,17 +27,10 @@
 namespace stillmap {
 namespace {
 
-constexpr std::uint32_t kFrames = 60;
 constexpr std::uint32_t kEnters = 10;  // frame in which the curtain appears
 constexpr int kCurtainEnd = 150;       // the columns left of it are never covered
 constexpr int kFrayedBegin = 170;      // column from which depth is wrong
 constexpr float kCurtain_m = 1.0F;     // nearer than anything in the room
-
-// The empty room as a hand-held camera sees it.
-const RenderedRoom& room() {
-  static const RenderedRoom kRoom(kFrames);
-  return kRoom;
-}
 
 /// The first column that a curtain covers, which comes in from the right.
 int curtain_begin(std::uint32_t k) {
@@ -88,7 +81,7 @@ using Network = std::function<FrameDetections(std::uint32_t k)>;
 
 FrameDetections empty_frame(std::uint32_t k) {
   FrameDetections found;
-  found.stamp = room().sequence().stamp(FrameId(k));
+  found.stamp = empty_room().sequence().stamp(FrameId(k));
   found.mask = ObjectMask(cv::Mat1b(240, 320, std::uint8_t{0}));
   return found;
 }
@@ -113,14 +106,14 @@ FrameDetections whole_curtain(std::uint32_t k) {
 
 RunResult run(Disturbance disturbance, const Network& network, const SystemConfig& config) {
   ObjectTracker tracker(config.dynamics.object_tracking(), FillRule::kBothWays);
-  System system(config, room().camera(), {.threads = 1});
+  System system(config, empty_room().camera(), {.threads = 1});
   std::vector<FramePtr> frames;
   const auto process = [&](FrameObjects objects) {
     const FramePtr frame = frames.at(objects.frame.value);
     (void)system.process(frame, std::move(objects));
   };
-  for (std::uint32_t k = 0; k < kFrames; ++k) {
-    frames.push_back(disturbed(*room().frame(k), disturbance));
+  for (std::uint32_t k = 0; k < kRoomFrames; ++k) {
+    frames.push_back(disturbed(*empty_room().frame(k), disturbance));
     if (auto objects = tracker.push({FrameId(k), network(k), frames[k]->depth})) {
       process(std::move(*objects));
     }
@@ -132,12 +125,12 @@ RunResult run(Disturbance disturbance, const Network& network, const SystemConfi
 /// The error in metres plus the share of frames without a pose (all frames lost: 1 m).
 double error(Disturbance disturbance, const Network& network, const SystemConfig& config) {
   Trajectory truth;
-  for (std::uint32_t k = 0; k < kFrames; ++k) {
-    truth.push_back({room().sequence().stamp(FrameId(k)), room().pose(k)});
+  for (std::uint32_t k = 0; k < kRoomFrames; ++k) {
+    truth.push_back({empty_room().sequence().stamp(FrameId(k)), empty_room().pose(k)});
   }
   const Trajectory trajectory = run(disturbance, network, config).trajectory;
   const std::optional<AteResult> ate = absolute_trajectory_error(truth, trajectory);
-  const double lost = static_cast<double>(kFrames - trajectory.size()) / kFrames;
+  const double lost = static_cast<double>(kRoomFrames - trajectory.size()) / kRoomFrames;
   return lost + (ate ? ate->translation_m.rmse : 1.0);
 }
 

@@ -22,13 +22,6 @@
 namespace stillmap {
 namespace {
 
-constexpr std::uint32_t kFrames = 60;
-
-const RenderedRoom& room() {
-  static const RenderedRoom kRoom(kFrames);
-  return kRoom;
-}
-
 SystemConfig static_world() {
   SystemConfig config;
   config.dynamics.mode = "off";
@@ -41,12 +34,15 @@ struct FinishedRun {
 };
 
 // Runs the frames; those from `dark_begin` to `dark_end` - 1 are dark.
-FinishedRun run(int threads, std::uint32_t dark_begin = kFrames, std::uint32_t dark_end = kFrames) {
+FinishedRun run(int threads,
+                std::uint32_t dark_begin = kRoomFrames,
+                std::uint32_t dark_end = kRoomFrames) {
   System system(static_world(), synthetic_camera(320, 240), {.threads = threads});
   FinishedRun done;
-  for (std::uint32_t k = 0; k < kFrames; ++k) {
+  for (std::uint32_t k = 0; k < kRoomFrames; ++k) {
     const bool dark = k >= dark_begin && k < dark_end;
-    done.frames.push_back(system.process(dark ? room().dark_frame(k) : room().frame(k)));
+    done.frames.push_back(
+        system.process(dark ? empty_room().dark_frame(k) : empty_room().frame(k)));
     system.map().check_consistency();
   }
   done.result = system.finish();
@@ -64,23 +60,23 @@ void expect_equal(const Trajectory& a, const Trajectory& b) {
 
 TEST(System, FollowsARenderedCameraAndMapsItsRoom) {
   const FinishedRun done = run(1);
-  ASSERT_EQ(done.result.trajectory.size(), kFrames);
+  ASSERT_EQ(done.result.trajectory.size(), kRoomFrames);
   EXPECT_FALSE(done.result.lost_at_end);
   EXPECT_EQ(done.frames[0].status, TrackingStatus::kInitialized);
   EXPECT_TRUE(done.frames[0].is_keyframe);
   const std::optional<AteResult> ate =
-      absolute_trajectory_error(room().sequence().ground_truth(), done.result.trajectory);
+      absolute_trajectory_error(empty_room().sequence().ground_truth(), done.result.trajectory);
   ASSERT_TRUE(ate);
-  EXPECT_EQ(ate->pairs.size(), kFrames);
+  EXPECT_EQ(ate->pairs.size(), kRoomFrames);
   EXPECT_LT(ate->translation_m.rmse, 0.006);
   EXPECT_GT(done.result.keyframes.size(), 2U);
-  EXPECT_LT(done.result.keyframes.size(), kFrames / 3);
+  EXPECT_LT(done.result.keyframes.size(), kRoomFrames / 3);
   EXPECT_GT(done.result.map.size(), 10000U);
   // The world frame is that of the first camera, and stamps are those of the frames.
   EXPECT_TRUE(
       done.result.trajectory[0].T_world_camera.isApprox(Eigen::Isometry3d::Identity(), 1e-12));
-  for (std::uint32_t k = 0; k < kFrames; ++k) {
-    EXPECT_EQ(done.result.trajectory[k].stamp.text, room().sequence().stamp(FrameId(k)).text);
+  for (std::uint32_t k = 0; k < kRoomFrames; ++k) {
+    EXPECT_EQ(done.result.trajectory[k].stamp.text, empty_room().sequence().stamp(FrameId(k)).text);
   }
 }
 
@@ -88,10 +84,10 @@ TEST(System, ASmoothTrajectoryIsNearerToTheTruth) {
   const auto error_m = [](bool smooth) {
     SystemConfig config = static_world();
     config.tracking.smooth = smooth;
-    System system(config, room().camera(), {.threads = 1});
-    for (std::uint32_t k = 0; k < kFrames; ++k) (void)system.process(room().frame(k));
+    System system(config, empty_room().camera(), {.threads = 1});
+    for (std::uint32_t k = 0; k < kRoomFrames; ++k) (void)system.process(empty_room().frame(k));
     const Trajectory trajectory = system.finish().trajectory;
-    return absolute_trajectory_error(room().sequence().ground_truth(), trajectory)
+    return absolute_trajectory_error(empty_room().sequence().ground_truth(), trajectory)
         .value()
         .translation_m.rmse;
   };
@@ -107,7 +103,7 @@ TEST(System, GivesTheSameBitsWithAnyNumberOfThreads) {
     expect_equal(one.result.keyframes, other->result.keyframes);
     EXPECT_EQ(one.result.map.positions, other->result.map.positions);
     EXPECT_EQ(one.result.map.colors, other->result.map.colors);
-    for (std::uint32_t k = 0; k < kFrames; ++k) {
+    for (std::uint32_t k = 0; k < kRoomFrames; ++k) {
       EXPECT_EQ(one.frames[k].is_keyframe, other->frames[k].is_keyframe);
       EXPECT_EQ(one.frames[k].tracked_features, other->frames[k].tracked_features);
       EXPECT_EQ(one.frames[k].T_world_camera.matrix(), other->frames[k].T_world_camera.matrix());
@@ -118,7 +114,7 @@ TEST(System, GivesTheSameBitsWithAnyNumberOfThreads) {
 // Moved by whole voxels, so that points stay together; a point on the face between two may change.
 TEST(System, MakesItsCloudAgainUnderOtherPoses) {
   System system(static_world(), synthetic_camera(320, 240), {.threads = 1});
-  for (std::uint32_t k = 0; k < kFrames; ++k) (void)system.process(room().frame(k));
+  for (std::uint32_t k = 0; k < kRoomFrames; ++k) (void)system.process(empty_room().frame(k));
   const RunResult result = system.finish();
   std::vector<std::optional<Eigen::Isometry3d>> same, moved;
   for (const StampedPose& pose : result.trajectory) {
@@ -142,15 +138,15 @@ TEST(System, MakesItsCloudAgainUnderOtherPoses) {
 
 TEST(System, MarksDarkFramesAsLostAndFindsBack) {
   const FinishedRun done = run(2, 35, 45);
-  for (std::uint32_t k = 0; k < kFrames; ++k) {
+  for (std::uint32_t k = 0; k < kRoomFrames; ++k) {
     const bool dark = k >= 35 && k < 45;
     EXPECT_EQ(has_pose(done.frames[k]), !dark) << k;
   }
   EXPECT_EQ(done.frames[45].status, TrackingStatus::kRelocalized);
-  EXPECT_EQ(done.result.trajectory.size(), kFrames - 10);
+  EXPECT_EQ(done.result.trajectory.size(), kRoomFrames - 10);
   EXPECT_FALSE(done.result.lost_at_end);
   const std::optional<AteResult> ate =
-      absolute_trajectory_error(room().sequence().ground_truth(), done.result.trajectory);
+      absolute_trajectory_error(empty_room().sequence().ground_truth(), done.result.trajectory);
   ASSERT_TRUE(ate);
   EXPECT_LT(ate->translation_m.rmse, 0.008);
 }
@@ -159,17 +155,17 @@ TEST(System, BeginsWithTheFirstFrameThatShowsSomething) {
   const FinishedRun done = run(1, 0, 5);
   EXPECT_EQ(done.frames[4].status, TrackingStatus::kLost);
   EXPECT_EQ(done.frames[5].status, TrackingStatus::kInitialized);
-  EXPECT_EQ(done.result.trajectory.size(), kFrames - 5);
+  EXPECT_EQ(done.result.trajectory.size(), kRoomFrames - 5);
 }
 
 TEST(System, SaysThatItWasLostAtTheEnd) {
-  const FinishedRun done = run(2, kFrames - 3, kFrames);
+  const FinishedRun done = run(2, kRoomFrames - 3, kRoomFrames);
   EXPECT_TRUE(done.result.lost_at_end);
-  EXPECT_EQ(done.result.trajectory.size(), kFrames - 3);
+  EXPECT_EQ(done.result.trajectory.size(), kRoomFrames - 3);
 }
 
 TEST(System, OfNothingButDarknessGivesNothing) {
-  const FinishedRun done = run(1, 0, kFrames);
+  const FinishedRun done = run(1, 0, kRoomFrames);
   EXPECT_TRUE(done.result.lost_at_end);
   EXPECT_TRUE(done.result.trajectory.empty());
   EXPECT_TRUE(done.result.keyframes.empty());
@@ -179,7 +175,7 @@ TEST(System, OfNothingButDarknessGivesNothing) {
 TEST(System, CanBeGivenUpWithJobsPending) {
   for (std::uint32_t frames_done = 1; frames_done < 8; ++frames_done) {
     System system({}, synthetic_camera(320, 240), {.threads = 2});
-    for (std::uint32_t k = 0; k < frames_done; ++k) (void)system.process(room().frame(k));
+    for (std::uint32_t k = 0; k < frames_done; ++k) (void)system.process(empty_room().frame(k));
   }
 }
 

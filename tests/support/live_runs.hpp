@@ -28,6 +28,7 @@ class TestClock : public Clock {
 
 /// The wall of plane_sequence.hpp, 30 frames.
 inline constexpr std::size_t kWallFrames = 30;
+inline constexpr double kWallPeriod_s = 1 / 30.0;
 inline const Sequence& wall_sequence() {
   static const TemporaryFolder kFolder;
   static const Sequence kSequence = [] {

@@ -51,4 +51,12 @@ class RenderedRoom {
   mutable std::vector<FramePtr> frames_;
 };
 
+inline constexpr std::uint32_t kRoomFrames = 60;
+
+/// The room of most tests: `kRoomFrames` long.
+inline const RenderedRoom& empty_room() {
+  static const RenderedRoom kRoom(kRoomFrames);
+  return kRoom;
+}
+
 }  // namespace stillmap

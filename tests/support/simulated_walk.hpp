@@ -11,7 +11,7 @@
 
 namespace stillmap {
 
-inline constexpr ObservationNoise kNoise{
+inline constexpr ObservationNoise kWalkNoise{
     .pixel_sigma_px = 0.7, .inverse_depth_sigma = 0.01, .flipped_bits = 15};
 inline constexpr MeasurementConfig kMeasurement{.pixel_sigma_px = 0.7, .inverse_depth_sigma = 0.01};
 
@@ -87,7 +87,7 @@ class SimulatedWalk {
     std::vector<Eigen::Isometry3d> poses;
     for (int k = 0; k < 300; k += 15) poses.push_back(path(time(k)));
     std::mt19937 rng(2);
-    return make_true_map(world(), poses, kNoise, rng);
+    return make_true_map(world(), poses, kWalkNoise, rng);
   }
 
   CameraPath path_;

@@ -65,6 +65,11 @@ CameraModel simulated_camera() {
   return {"simulated", 640, 480, 525.0, 520.0, 319.5, 241.0};
 }
 
+const SimulatedWorld& simulated_world() {
+  static const SimulatedWorld kWorld({}, simulated_camera());
+  return kWorld;
+}
+
 SimulatedWorld::SimulatedWorld(const Config& config, const CameraModel& camera) : camera_(camera) {
   for (int level = 0; level < kLevels; ++level) {
     level_scales_.push_back(static_cast<float>(std::pow(kScaleFactor, level)));

@@ -89,4 +89,7 @@ class SimulatedWorld {
 /// An undistorted camera of 640 x 480 pixels.
 [[nodiscard]] CameraModel simulated_camera();
 
+/// The world of most tests: no setting changed, seen by `simulated_camera()`.
+[[nodiscard]] const SimulatedWorld& simulated_world();
+
 }  // namespace stillmap

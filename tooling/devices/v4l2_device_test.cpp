@@ -39,7 +39,7 @@ Bytes bytes_of(const cv::Mat& pixels) {
   return {pixels.data, pixels.data + pixels.total() * pixels.elemSize()};
 }
 
-CameraModel small_camera() {
+CameraModel video_camera() {
   CameraModel camera;
   camera.name = "small";
   camera.width_px = kSmall.width;
@@ -103,7 +103,7 @@ TEST_F(V4l2, GivesTheBitsOfPairs) {
   units(0, 2) = 1500;
   image(kColor, 0.1, 100.25, bytes_of(rgb));
   image(kDepth, 0.001, 100.252, bytes_of(units));
-  const std::unique_ptr<Device> device = open({.camera = small_camera()});
+  const std::unique_ptr<Device> device = open({.camera = video_camera()});
   EXPECT_EQ(device->name(), "v4l2:c,d");
   EXPECT_FALSE(device->camera());
   EXPECT_THAT(device->warnings(), ElementsAre(HasSubstr("does not register its depth")));
@@ -124,10 +124,10 @@ TEST_F(V4l2, GivesTheBitsOfPairs) {
 TEST_F(V4l2, TheCameraSaysTheUnitAndTheSizes) {
   video_.nodes[kColor].formats[0].sizes = {{640, 480}, kSmall, {1280, 720}};
   video_.nodes[kDepth].formats[0].sizes = {{4, 3}, {640, 480}};
-  CameraModel camera = small_camera();
+  CameraModel camera = video_camera();
   camera.depth_factor = 10000;
   camera.depth_factor_given = true;
-  DepthCamera depth_camera{small_camera(), Eigen::Isometry3d::Identity()};
+  DepthCamera depth_camera{video_camera(), Eigen::Isometry3d::Identity()};
   depth_camera.camera.width_px = 4;
   depth_camera.camera.height_px = 3;
   camera.depth_camera = std::make_shared<const DepthCamera>(depth_camera);
@@ -219,10 +219,10 @@ TEST_F(V4l2, ADamagedImageIsADamagedFrameOfTheStream) {
   image(kColor, 0.1, 1.1, Bytes(10, 1));
   image(kDepth, 0, 1.1, Bytes(8 * 6 * 2, 1));
   pair(0.1, 1.2);
-  const std::unique_ptr<Device> device = open({.camera = small_camera()});
+  const std::unique_ptr<Device> device = open({.camera = video_camera()});
   DeviceStream stream(*device,
                       clock_,
-                      {.camera = small_camera(),
+                      {.camera = video_camera(),
                        .begin_s = 1000,
                        .stopped = [&] { return video_.events.empty(); },
                        .tell = [](const std::string&) {}});
@@ -241,10 +241,10 @@ TEST_F(V4l2, IsWaitedForAndOpenedAgain) {
   pair(0.1, 0.6);
   std::vector<std::string> told;
   std::vector<double> told_at_s, stamps;
-  const std::unique_ptr<Device> device = open({.camera = small_camera()});
+  const std::unique_ptr<Device> device = open({.camera = video_camera()});
   DeviceStream stream(*device,
                       clock_,
-                      {.camera = small_camera(),
+                      {.camera = video_camera(),
                        .begin_s = 1000,
                        .stopped = [&] { return stamps.size() == 4; },
                        .tell =
@@ -299,7 +299,7 @@ TEST_F(V4l2, DriversThatGiveSomethingElseAreRefused) {
   EXPECT_THAT(error(),
               HasSubstr("does not have one size up to 640x480 of both; /dev/video4 has RGB3 8x6; "
                         "/dev/video2 has Z16 4x3"));
-  EXPECT_THAT(error_of([&] { (void)open({.camera = small_camera()}); }),
+  EXPECT_THAT(error_of([&] { (void)open({.camera = video_camera()}); }),
               HasSubstr("the sizes of the camera, 8x6 of colour and 8x6 of depth"));
 }
 

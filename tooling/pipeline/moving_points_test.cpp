@@ -12,7 +12,7 @@
 namespace stillmap {
 namespace {
 
-CameraModel small_camera() {
+CameraModel wide_camera() {
   CameraModel camera;
   camera.width_px = 60;
   camera.height_px = 30;
@@ -64,7 +64,7 @@ Record record_at(const std::string& ply, std::size_t i) {
 }
 
 TEST(MovingPoints, AreThoseOfDynamicObjectsUnderFinalPoses) {
-  MovingPoints movers(small_camera());
+  MovingPoints movers(wide_camera());
   const Stamp early{5.0, "5.0"}, late{6.0, "6.0"}, elsewhere{7.0, "7.0"};
   movers.on_frame(wall_at_2_m(), seen(early, TrackId(3)));
   movers.on_frame(wall_at_2_m(), seen(late, TrackId(4)));

@@ -28,7 +28,7 @@ using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-const cv::Size kImage(40, 30);
+const cv::Size kSmallImage(40, 30);
 
 Stamp stamp_of(const std::string& text) {
   return {std::stod(text), text};
@@ -38,14 +38,14 @@ FrameDetections two_objects(const std::string& stamp) {
   FrameDetections frame;
   frame.stamp = stamp_of(stamp);
   frame.objects = {{7, "person", 0.5F, {0, 0, 10, 10}}, {9, "chair", 0.25F, {5, 5, 20, 30}}};
-  frame.mask.mat = cv::Mat1b(kImage, std::uint8_t{0});
+  frame.mask.mat = cv::Mat1b(kSmallImage, std::uint8_t{0});
   frame.mask.mat(cv::Rect(0, 0, 10, 10)).setTo(7);
   frame.mask.mat(cv::Rect(5, 10, 15, 20)).setTo(9);
   return frame;
 }
 
 void write_folder(const fs::path& folder, const std::vector<FrameDetections>& frames) {
-  DetectionsWriter writer(folder, kImage);
+  DetectionsWriter writer(folder, kSmallImage);
   for (const FrameDetections& frame : frames) writer.add(frame);
   writer.finish();
 }
@@ -56,7 +56,7 @@ void write_list(const fs::path& folder, const std::string& text) {
 }
 
 std::string open_error(const fs::path& folder) {
-  return error_of([&] { (void)DetectionsFolder::open(folder, kImage); });
+  return error_of([&] { (void)DetectionsFolder::open(folder, kSmallImage); });
 }
 
 void expect_same(const FrameDetections& found, const FrameDetections& expected) {
@@ -78,7 +78,7 @@ TEST(DetectionsFolder, GivesBackWhatWasWritten) {
   const std::vector<FrameDetections> frames = {two_objects("1.5"), without_pixels, nothing};
   write_folder(folder.path() / "a" / "b", frames);
 
-  const DetectionsFolder read = DetectionsFolder::open(folder.path() / "a" / "b", kImage);
+  const DetectionsFolder read = DetectionsFolder::open(folder.path() / "a" / "b", kSmallImage);
   ASSERT_EQ(read.size(), 3U);
   for (const FrameDetections& frame : frames) expect_same(read.at(frame.stamp), frame);
   EXPECT_FALSE(fs::exists(folder.path() / "a" / "b" / "masks" / "2.25.png"));
@@ -87,7 +87,7 @@ TEST(DetectionsFolder, GivesBackWhatWasWritten) {
 TEST(DetectionsFolder, KnowsAStampByItsNumber) {
   const TemporaryFolder folder;
   write_folder(folder.path(), {two_objects("1.500000"), two_objects("2.5")});
-  const DetectionsFolder read = DetectionsFolder::open(folder.path(), kImage);
+  const DetectionsFolder read = DetectionsFolder::open(folder.path(), kSmallImage);
   EXPECT_EQ(read.at(stamp_of("1.5")).stamp.text, "1.500000");
   EXPECT_EQ(read.at(stamp_of("2.50")).stamp.text, "2.5");
   EXPECT_TRUE(read.contains(stamp_of("2.5")));
@@ -115,7 +115,7 @@ TEST(DetectionsFolder, TakesBlankLinesAndWindowsLineEnds) {
   const TemporaryFolder folder;
   write_list(folder.path(),
              "{\"stamp\":\"1\",\"objects\":[]}\r\n\r\n\n{\"stamp\":\"2\",\"objects\":[]}");
-  EXPECT_EQ(DetectionsFolder::open(folder.path(), kImage).size(), 2U);
+  EXPECT_EQ(DetectionsFolder::open(folder.path(), kSmallImage).size(), 2U);
 }
 
 TEST(DetectionsFolder, RefusesAListThatIsMissingEmptyOrOutOfOrder) {
@@ -154,7 +154,7 @@ TEST(DetectionsFolder, RefusesOrReadsWhateverBytesChange) {
     damaged[rng() % damaged.size()] = static_cast<char>(rng());
     write_list(folder.path(), damaged);
     try {
-      EXPECT_GE(DetectionsFolder::open(folder.path(), kImage).size(), 1U);
+      EXPECT_GE(DetectionsFolder::open(folder.path(), kSmallImage).size(), 1U);
     } catch (const Error& error) {
       ++refused;
       EXPECT_THAT(error.what(), HasSubstr("detections.jsonl:"));
@@ -167,10 +167,10 @@ TEST(DetectionsFolder, RefusesMasksThatDoNotFitTheirLine) {
   const TemporaryFolder folder;
   write_folder(folder.path(), {two_objects("1.5")});
   const fs::path mask = folder.path() / "masks" / "1.5.png";
-  const DetectionsFolder read = DetectionsFolder::open(folder.path(), kImage);
+  const DetectionsFolder read = DetectionsFolder::open(folder.path(), kSmallImage);
   const auto error = [&] { return error_of([&] { (void)read.at(stamp_of("1.5")); }); };
 
-  cv::Mat1b stranger(kImage, std::uint8_t{0});
+  cv::Mat1b stranger(kSmallImage, std::uint8_t{0});
   stranger(29, 39) = 8;
   write_file_atomically(mask, encode_mask_png(stranger));
   EXPECT_EQ(error(),
@@ -178,7 +178,7 @@ TEST(DetectionsFolder, RefusesMasksThatDoNotFitTheirLine) {
                 "/detections.jsonl:1 has not");
   write_file_atomically(mask, encode_mask_png(cv::Mat1b(40, 30, std::uint8_t{7})));
   EXPECT_EQ(error(), mask.string() + ": 30x40 pixels, expected 40x30 as the images have");
-  write_file_atomically(mask, encode_depth_png(DepthImage(cv::Mat1f(kImage, 1.F)), 5000));
+  write_file_atomically(mask, encode_depth_png(DepthImage(cv::Mat1f(kSmallImage, 1.F)), 5000));
   EXPECT_THAT(error(), StartsWith(mask.string()));
   write_file_atomically(mask, "");
   EXPECT_THAT(error(), StartsWith(mask.string()));
@@ -199,18 +199,18 @@ TEST(DetectionsFolder, NoticesBoxesInShares) {
                              HasSubstr("in pixels, not in shares")));
   // A box of the corner pixel is valid among other boxes.
   write_list(folder.path(), none + line_of("2", "[0,0,1,1]") + line_of("3", "[0,0,20,30]"));
-  EXPECT_EQ(DetectionsFolder::open(folder.path(), kImage).size(), 3U);
+  EXPECT_EQ(DetectionsFolder::open(folder.path(), kSmallImage).size(), 3U);
 }
 
 TEST(DetectionsFolder, NoticesBoxesOfWidthAndHeight) {
   const TemporaryFolder folder;
   // Pixels from (5, 4) to (25, 22): 20 wide, 18 high.
-  cv::Mat1b mask(kImage, std::uint8_t{0});
+  cv::Mat1b mask(kSmallImage, std::uint8_t{0});
   mask(cv::Rect(5, 4, 20, 18)).setTo(7);
   const auto error = [&](const std::string& box) {
     write_list(folder.path(), line_of("1", box));
     write_file_atomically(folder.path() / "masks" / "1.png", encode_mask_png(mask));
-    const DetectionsFolder read = DetectionsFolder::open(folder.path(), kImage);
+    const DetectionsFolder read = DetectionsFolder::open(folder.path(), kSmallImage);
     return error_of([&] { (void)read.at(stamp_of("1")); });
   };
   EXPECT_THAT(error("[5,4,20,18]"),
@@ -221,7 +221,8 @@ TEST(DetectionsFolder, NoticesBoxesOfWidthAndHeight) {
   // Valid boxes, and one that holds only a part of the object.
   for (const char* box : {"[5,4,25,22]", "[4,3,26,24]", "[5,4,15,22]"}) {
     write_list(folder.path(), line_of("1", box));
-    EXPECT_EQ(DetectionsFolder::open(folder.path(), kImage).at(stamp_of("1")).objects.size(), 1U);
+    EXPECT_EQ(DetectionsFolder::open(folder.path(), kSmallImage).at(stamp_of("1")).objects.size(),
+              1U);
   }
 }
 
@@ -231,7 +232,7 @@ TEST(DetectionsFolder, AMaskWithoutPixelsIsNone) {
   frame.mask.mat.setTo(0);
   write_folder(folder.path(), {frame});
   EXPECT_TRUE(fs::exists(folder.path() / "masks" / "1.5.png"));
-  const DetectionsFolder read = DetectionsFolder::open(folder.path(), kImage);
+  const DetectionsFolder read = DetectionsFolder::open(folder.path(), kSmallImage);
   EXPECT_TRUE(read.at(frame.stamp).mask.mat.empty());
 }
 
@@ -242,16 +243,18 @@ TEST(DetectionsWriter, LeavesTheOldUntilItIsFinished) {
   FrameDetections nothing;
   nothing.stamp = stamp_of("1.5");
   {
-    DetectionsWriter given_up(folder.path(), kImage);
+    DetectionsWriter given_up(folder.path(), kSmallImage);
     given_up.add(nothing);
   }
-  EXPECT_EQ(DetectionsFolder::open(folder.path(), kImage).size(), 2U);
-  DetectionsWriter writer(folder.path(), kImage);
+  EXPECT_EQ(DetectionsFolder::open(folder.path(), kSmallImage).size(), 2U);
+  DetectionsWriter writer(folder.path(), kSmallImage);
   writer.add(nothing);
-  EXPECT_FALSE(DetectionsFolder::open(folder.path(), kImage).at(nothing.stamp).mask.mat.empty());
+  EXPECT_FALSE(
+      DetectionsFolder::open(folder.path(), kSmallImage).at(nothing.stamp).mask.mat.empty());
   writer.finish();
-  EXPECT_EQ(DetectionsFolder::open(folder.path(), kImage).size(), 1U);
-  EXPECT_TRUE(DetectionsFolder::open(folder.path(), kImage).at(nothing.stamp).mask.mat.empty());
+  EXPECT_EQ(DetectionsFolder::open(folder.path(), kSmallImage).size(), 1U);
+  EXPECT_TRUE(
+      DetectionsFolder::open(folder.path(), kSmallImage).at(nothing.stamp).mask.mat.empty());
   EXPECT_FALSE(fs::exists(folder.path() / "masks" / "1.6.png")) << "the mask of an earlier time";
   EXPECT_TRUE(fs::exists(folder.path() / "masks" / "person7.png"));
 }
@@ -267,7 +270,7 @@ TEST(DetectionsWriter, TakesEveryStampAndClass) {
     frames.back().objects[1].class_name = "\u4EBA";
   }
   write_folder(folder.path(), frames);
-  const DetectionsFolder read = DetectionsFolder::open(folder.path(), kImage);
+  const DetectionsFolder read = DetectionsFolder::open(folder.path(), kSmallImage);
   for (const FrameDetections& frame : frames) {
     const FrameDetections again = read.at(frame.stamp);
     EXPECT_EQ(again.stamp.text, frame.stamp.text);
@@ -279,7 +282,7 @@ TEST(DetectionsWriter, TakesEveryStampAndClass) {
 TEST(DetectionsWriter, RefusesWhatCouldNotBeReadBack) {
   const TemporaryFolder folder;
   const auto error = [&](const FrameDetections& frame) {
-    DetectionsWriter writer(folder.path(), kImage);
+    DetectionsWriter writer(folder.path(), kSmallImage);
     return error_of([&] { writer.add(frame); });
   };
   FrameDetections path = two_objects("1.5");
@@ -294,7 +297,7 @@ TEST(DetectionsWriter, RefusesWhatCouldNotBeReadBack) {
   FrameDetections small = two_objects("1.5");
   small.mask.mat = cv::Mat1b(20, 20, std::uint8_t{0});
   EXPECT_THAT(error(small), HasSubstr("20x20"));
-  DetectionsWriter writer(folder.path(), kImage);
+  DetectionsWriter writer(folder.path(), kSmallImage);
   writer.add(two_objects("2"));
   EXPECT_THAT(error_of([&] { writer.add(two_objects("2.0")); }), HasSubstr("not later"));
 }
@@ -302,7 +305,7 @@ TEST(DetectionsWriter, RefusesWhatCouldNotBeReadBack) {
 TEST(DetectionsWriter, SaysWhenItCannotWrite) {
   const TemporaryFolder folder;
   write_file_atomically(folder.path() / "file", "x");
-  EXPECT_THAT(error_of([&] { DetectionsWriter writer(folder.path() / "file", kImage); }),
+  EXPECT_THAT(error_of([&] { DetectionsWriter writer(folder.path() / "file", kSmallImage); }),
               HasSubstr("cannot be made"));
 }
 

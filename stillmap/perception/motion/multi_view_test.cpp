@@ -11,7 +11,7 @@
 namespace stillmap {
 namespace {
 
-const cv::Rect kBox(200, 120, 120, 240);  // in the image, where something stands now
+const cv::Rect kStandingBox(200, 120, 120, 240);  // in the image, where something stands now
 
 /// A wall at 3 m before a camera that has moved since, and points that were seen on it.
 struct Wall {
@@ -36,25 +36,25 @@ struct Wall {
 TEST(HidingObjects, AreWholeAndNothingElseIs) {
   Wall wall;
   EXPECT_EQ(cv::countNonZero(wall.hiding()), 0);
-  wall.depth.mat(kBox).setTo(1.5F);
+  wall.depth.mat(kStandingBox).setTo(1.5F);
   const cv::Mat1b hiding = wall.hiding();
-  EXPECT_EQ(cv::countNonZero(hiding), kBox.area());
-  EXPECT_EQ(cv::countNonZero(hiding(kBox) == kCameNearer), kBox.area());
+  EXPECT_EQ(cv::countNonZero(hiding), kStandingBox.area());
+  EXPECT_EQ(cv::countNonZero(hiding(kStandingBox) == kCameNearer), kStandingBox.area());
 }
 
 // 0.4 m: the depth of the box is 2.65 m, then 2.55 m.
 TEST(HidingObjects, AreNearerThanTheBound) {
   Wall wall;
-  wall.depth.mat(kBox).setTo(2.65F);
+  wall.depth.mat(kStandingBox).setTo(2.65F);
   EXPECT_EQ(cv::countNonZero(wall.hiding()), 0);
-  wall.depth.mat(kBox).setTo(2.55F);
-  EXPECT_EQ(cv::countNonZero(wall.hiding()), kBox.area());
+  wall.depth.mat(kStandingBox).setTo(2.55F);
+  EXPECT_EQ(cv::countNonZero(wall.hiding()), kStandingBox.area());
 }
 
 // From 3 m aside, the rays to the wall differ by 45 degrees: what hides it may stand there still.
 TEST(HidingObjects, AreNotJudgedAcrossAWideParallax) {
   Wall wall;
-  wall.depth.mat(kBox).setTo(1.5F);
+  wall.depth.mat(kStandingBox).setTo(1.5F);
   const Eigen::Isometry3d T_view_before = wall.T_current_view;
   wall.T_current_view = make_pose(so3_exp({0.0, 0.0, 0.0}), {3.0, 0.0, 0.0});
   for (Eigen::Vector3d& p : wall.points) p = wall.T_current_view.inverse() * (T_view_before * p);
@@ -70,7 +70,7 @@ TEST(HidingObjects, AreNotFoundByTheirRimsAlone) {
 
 TEST(HidingObjects, NothingIsKnownWhereDepthIsMissing) {
   Wall wall;
-  wall.depth.mat(kBox).setTo(0.0F);
+  wall.depth.mat(kStandingBox).setTo(0.0F);
   EXPECT_EQ(cv::countNonZero(wall.hiding()), 0);
 }
 

@@ -34,9 +34,9 @@ struct Panel {
 };
 
 /// A room whose wall is 6 m away, in which panels are seen and identified.
-class Room {
+class PanelRoom {
  public:
-  explicit Room(const IdentityConfig& config = {})
+  explicit PanelRoom(const IdentityConfig& config = {})
       : identities_(config, CategoryTable({}), camera_) {}
 
   /// The tracks of the panels in a frame taken `at_s` with the camera at `camera_x_m`.
@@ -104,7 +104,7 @@ Panel person(std::uint32_t tracklet, double x_m, cv::Vec3b color) {
 using Tracks = std::vector<std::uint32_t>;
 
 TEST(ObjectIdentities, AThingHasItsTrackAfterTheCameraLookedElsewhere) {
-  Room room;
+  PanelRoom room;
   const Tracks first = room.see(0, {{3, "chair", {0.2, 0, 2}}});
   EXPECT_EQ(room.see(0.1, {{3, "chair", {0.2, 0, 2}}}), first);
   EXPECT_EQ(room.see(20, {{9, "chair", {0.25, 0, 2.05}}}, 0.7), first);
@@ -113,13 +113,13 @@ TEST(ObjectIdentities, AThingHasItsTrackAfterTheCameraLookedElsewhere) {
 
   IdentityConfig off;
   off.enabled = false;
-  Room without(off);
+  PanelRoom without(off);
   EXPECT_NE(without.see(0, {{3, "chair", {0.2, 0, 2}}}),
             without.see(20, {{9, "chair", {0.2, 0, 2}}}));
 }
 
 TEST(ObjectIdentities, AThingElsewhereIsAnother) {
-  Room room;
+  PanelRoom room;
   const Tracks first = room.see(0, {{3, "chair", {-0.4, 0, 2}}});
   EXPECT_NE(room.see(5, {{4, "chair", {0.6, 0, 2}}}), first);
   const Tracks both = room.see(9, {{5, "chair", {0.6, 0, 2}}, {6, "chair", {-0.4, 0, 2}}});
@@ -128,7 +128,7 @@ TEST(ObjectIdentities, AThingElsewhereIsAnother) {
 }
 
 TEST(ObjectIdentities, PeopleAreFoundAgainByTheirColors) {
-  Room room;
+  PanelRoom room;
   const Tracks first = room.see(0, {person(0, -0.6, kRed), person(1, 0.6, kBlue)});
   const Tracks later = room.see(9, {person(2, -0.6, kBlue), person(3, 0.6, kRed)});
   EXPECT_EQ(later, (Tracks{first.at(1), first.at(0)}));
@@ -136,7 +136,7 @@ TEST(ObjectIdentities, PeopleAreFoundAgainByTheirColors) {
 }
 
 TEST(ObjectIdentities, AMaskFilledInTellsNoPlaceOfAPerson) {
-  Room room;
+  PanelRoom room;
   Panel panel = person(1, 0, kRed);
   room.see(0, {panel});
   ASSERT_EQ(room.movers().size(), 1U);
@@ -149,7 +149,7 @@ TEST(ObjectIdentities, AMaskFilledInTellsNoPlaceOfAPerson) {
 
 TEST(ObjectIdentities, APersonIsFoundAgainOnlyWithinTheDistanceWalked) {
   const Tracks first{0};
-  Room soon, later;
+  PanelRoom soon, later;
   ASSERT_EQ(soon.see(0, {person(0, -1.1, kRed)}), first);
   ASSERT_EQ(later.see(0, {person(0, -1.1, kRed)}), first);
   EXPECT_NE(soon.see(0.5, {person(1, 1.1, kRed)}), first);
@@ -157,7 +157,7 @@ TEST(ObjectIdentities, APersonIsFoundAgainOnlyWithinTheDistanceWalked) {
 }
 
 TEST(ObjectIdentities, ALegSeenApartIsPartOfThePerson) {
-  Room room;
+  PanelRoom room;
   const Panel leg{1, "person", {0.1, 1.0, 2.5}, 0.15, 0.3, kBlue};
   const Tracks tracks = room.see(0, {person(0, 0, kRed), leg});
   EXPECT_EQ(tracks.at(0), tracks.at(1));
@@ -166,14 +166,14 @@ TEST(ObjectIdentities, ALegSeenApartIsPartOfThePerson) {
 }
 
 TEST(ObjectIdentities, ATrackThatJumpsIsTwoPeople) {
-  Room room;
+  PanelRoom room;
   const Tracks first = room.see(0, {person(0, -0.6, kRed)});
   EXPECT_EQ(room.see(0.03, {person(0, -0.55, kRed)}), first);
   EXPECT_NE(room.see(0.06, {person(0, 0.8, kBlue)}), first);
 }
 
 TEST(ObjectIdentities, TracksThatTurnOutToBeOneAreUnited) {
-  Room room;
+  PanelRoom room;
   const Tracks first = room.see(0, {{3, "chair", {0.2, 0, 2}}});
   const Tracks lost = room.see(8, {{9, "chair", {0.2, 0, 2}}}, 0, false);  // its place is unknown
   ASSERT_NE(lost, first);
@@ -185,11 +185,11 @@ TEST(ObjectIdentities, TracksThatTurnOutToBeOneAreUnited) {
 }
 
 TEST(ObjectIdentities, AnEarlierRunsObjectsAreFoundWhereTheMapHasThem) {
-  Room earlier;
+  PanelRoom earlier;
   const Tracks chair = earlier.see(0, {{3, "chair", {0.2, 0, 2}}});
   // The earlier run's world lies 1 m to the right of this run's odometry frame.
   const Eigen::Isometry3d T_odometry_world(Eigen::Translation3d(1, 0, 0));
-  Room room;
+  PanelRoom room;
   room.know(earlier.identities().all_in_world(Eigen::Isometry3d::Identity()));
   const Tracks lost = room.see(100, {{5, "chair", {0.2, 0, 2}}});
   EXPECT_NE(lost, chair) << "its place is not known yet";

@@ -10,15 +10,12 @@
 #include "stillmap/perception/segmentation/nanodet.hpp"
 #include "stillmap/perception/segmentation/ssd.hpp"
 #include "tests/support/files.hpp"
+#include "tests/support/tensors.hpp"
 
 namespace stillmap {
 namespace {
 
 using testing::HasSubstr;
-
-Tensor zeros(const TensorShape& shape) {
-  return {shape, std::vector<float>(static_cast<std::size_t>(element_count(shape)))};
-}
 
 void expect_box(const Candidate& candidate, const PixelBox& box) {
   EXPECT_NEAR(candidate.box.x0, box.x0, 1e-4);

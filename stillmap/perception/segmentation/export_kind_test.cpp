@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/files.hpp"
+#include "tests/support/tensors.hpp"
 
 namespace stillmap {
 namespace {
@@ -19,18 +20,16 @@ NetworkSignature with_input(const TensorShape& shape, const std::string& names =
 }
 
 // Outputs of these shapes that hold zeros.
-std::vector<Tensor> zeros(const std::vector<TensorShape>& shapes) {
+std::vector<Tensor> all_zeros(const std::vector<TensorShape>& shapes) {
   std::vector<Tensor> outputs;
-  for (const TensorShape& shape : shapes) {
-    outputs.push_back({shape, std::vector<float>(static_cast<std::size_t>(element_count(shape)))});
-  }
+  for (const TensorShape& shape : shapes) outputs.push_back(zeros(shape));
   return outputs;
 }
 
 NetworkExport identify(const std::vector<TensorShape>& outputs,
                        const std::string& names = "",
                        cv::Size input = kInput) {
-  return identify_export(with_input({1, 3, 8, 8}, names), zeros(outputs), input);
+  return identify_export(with_input({1, 3, 8, 8}, names), all_zeros(outputs), input);
 }
 
 std::string refusal(const std::vector<TensorShape>& outputs, const std::string& names = "") {
@@ -188,32 +187,32 @@ TEST(IdentifyExport, RefusesClassifiersOfWholeImages) {
     NetworkSignature signature = with_input({1, 3, 640, 640});
     signature.task = task;
     EXPECT_THAT(error_of([&] {
-                  (void)identify_export(signature, zeros({{1, 84, 8400}}), kInput);
+                  (void)identify_export(signature, all_zeros({{1, 84, 8400}}), kInput);
                 }),
                 HasSubstr("the task '" + std::string(task) + "'"));
   }
 }
 
 TEST(IdentifyExport, RefusesValuesThatAreNone) {
-  Tensor columns = zeros({{1, 84, 100}})[0];
+  Tensor columns = all_zeros({{1, 84, 100}})[0];
   columns.values[400] = 7.5F;  // the first class of the first box
   EXPECT_THAT(refusal_of_values(columns), HasSubstr("a score of 7.5, expected 0 to 1"));
   columns.values[400] = 0.5F;
   for (const std::size_t a : {0U, 1U, 2U, 3U}) columns.values[a * 100] = 0.5F;
   EXPECT_THAT(refusal_of_values(columns), HasSubstr("all boxes lie in 0 to 1, expected pixels"));
-  Tensor queries = zeros({{1, 2, 84}})[0];
+  Tensor queries = all_zeros({{1, 2, 84}})[0];
   queries.values[2] = 300;
   EXPECT_THAT(refusal_of_values(queries), HasSubstr("a side of a box at 300, expected shares"));
-  Tensor rows = zeros({{1, 2, 6}})[0];
+  Tensor rows = all_zeros({{1, 2, 6}})[0];
   rows.values[5] = 0.5F;
   EXPECT_THAT(refusal_of_values(rows), HasSubstr("a class number of 0.5"));
-  std::vector<Tensor> heat = zeros({{1, 160, 160, 80}, {1, 160, 160, 4}});
+  std::vector<Tensor> heat = all_zeros({{1, 160, 160, 80}, {1, 160, 160, 4}});
   heat[0].values[7] = -3;
   EXPECT_THAT(error_of([&] {
                 (void)identify_export(with_input({1, 3, 640, 640}), heat, kInput);
               }),
               HasSubstr("a score of -3, expected 0 to 1"));
-  Tensor labels = zeros({{1, 160, 160}})[0];
+  Tensor labels = all_zeros({{1, 160, 160}})[0];
   labels.values[9] = 0.25F;
   EXPECT_THAT(refusal_of_values(labels),
               HasSubstr("holds 0.25, expected whole numbers from 0 to 20"));

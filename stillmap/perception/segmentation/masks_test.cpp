@@ -11,6 +11,7 @@
 #include "stillmap/perception/segmentation/matting.hpp"
 #include "stillmap/perception/segmentation/yolo.hpp"
 #include "tests/support/files.hpp"
+#include "tests/support/tensors.hpp"
 
 namespace stillmap {
 namespace {
@@ -19,10 +20,6 @@ using testing::HasSubstr;
 
 bool same(const cv::Mat1b& a, const cv::Mat1b& b) {
   return a.size() == b.size() && cv::countNonZero(a != b) == 0;
-}
-
-Tensor zeros(const TensorShape& shape) {
-  return {shape, std::vector<float>(static_cast<std::size_t>(element_count(shape)))};
 }
 
 const std::vector<std::string> kNames = {"background", "person", "chair"};

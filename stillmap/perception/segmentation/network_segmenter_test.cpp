@@ -10,6 +10,7 @@
 #include <opencv2/core.hpp>
 
 #include "tests/support/files.hpp"
+#include "tests/support/tensors.hpp"
 
 namespace stillmap {
 namespace {
@@ -29,16 +30,12 @@ class FunctionNetwork : public Network {
   Run run_;
 };
 
-Tensor zeros(const TensorShape& shape) {
-  return {shape, std::vector<float>(static_cast<std::size_t>(element_count(shape)))};
-}
-
-const cv::Size kImage(64, 48);
+const cv::Size kSmallImage(64, 48);
 const Stamp kStamp{2.5, "2.5"};
 
 // White where a person stands, black elsewhere.
 ColorImage person_at(cv::Rect place) {
-  cv::Mat3b image = cv::Mat3b::zeros(kImage);
+  cv::Mat3b image = cv::Mat3b::zeros(kSmallImage);
   image(place).setTo(cv::Scalar(255, 255, 255));
   return ColorImage(image);
 }
@@ -58,14 +55,14 @@ TEST(NetworkSegmenter, ClassMapBecomesObjects) {
       std::make_unique<FunctionNetwork>(
           TensorShape{1, 3, 96, 128},
           [](const Tensor& input) { return std::vector{person_where_positive(input)}; }),
-      kImage);
+      kSmallImage);
   const cv::Rect place(10, 8, 24, 30);
   const FrameDetections found = segmenter.segment(person_at(place), kStamp);
   EXPECT_EQ(found.stamp.text, "2.5");
   ASSERT_EQ(found.objects.size(), 1U);
   EXPECT_EQ(found.objects[0].class_name, "person");
   EXPECT_EQ(found.objects[0].box, (PixelBox{10, 8, 34, 38}));
-  cv::Mat1b expected = cv::Mat1b::zeros(kImage);
+  cv::Mat1b expected = cv::Mat1b::zeros(kSmallImage);
   expected(place).setTo(1);
   EXPECT_EQ(cv::countNonZero(found.mask.mat != expected), 0);
 }
@@ -87,7 +84,7 @@ TEST(NetworkSegmenter, GivesABatchItsFirstImage) {
             all.values.resize(all.values.size() * 3, 9.0F);
             return std::vector{all};
           }),
-      kImage);
+      kSmallImage);
   const FrameDetections found = segmenter.segment(person_at({10, 8, 24, 30}), kStamp);
   ASSERT_EQ(found.objects.size(), 1U);
   EXPECT_EQ(found.objects[0].box, (PixelBox{10, 8, 34, 38}));
@@ -102,7 +99,7 @@ TEST(NetworkSegmenter, EndToEndBoxesInPixelsOfTheImage) {
           [](const Tensor&) {
             return std::vector{Tensor{{1, 2, 6}, {10, 18, 30, 48, 0.9F, 0, 0, 0, 0, 0, 0, 0}}};
           }),
-      kImage);
+      kSmallImage);
   const FrameDetections found = segmenter.segment(person_at({0, 0, 4, 4}), kStamp);
   ASSERT_EQ(found.objects.size(), 1U);
   EXPECT_EQ(found.objects[0].class_name, "person");
@@ -132,7 +129,7 @@ PersonSegmenter person_segmenter(float person, float other) {
       std::make_unique<FunctionNetwork>(TensorShape{1, 3, 64, 64}, nanodet(person, other)),
       std::make_unique<FunctionNetwork>(TensorShape{1, 32, 32, 3}, matting),
       0.5F,
-      kImage);
+      kSmallImage);
 }
 
 // The image fills the 64x64 input except 8 rows above and below: the box is the whole image.
@@ -143,7 +140,7 @@ TEST(PersonSegmenter, MaskIsOfTheMattingNetwork) {
   EXPECT_EQ(found.objects[0].class_name, "person");
   EXPECT_EQ(found.objects[0].pixel_source, PixelSource::kRoughNetwork);
   EXPECT_EQ(found.objects[0].box, (PixelBox{0, 0, 64, 48}));
-  cv::Mat1b expected = cv::Mat1b::zeros(kImage);
+  cv::Mat1b expected = cv::Mat1b::zeros(kSmallImage);
   expected(place).setTo(1);
   // A pixel of the crop holds two of the image: the outline is accurate to one pixel.
   EXPECT_LT(cv::countNonZero(found.mask.mat != expected), 2 * (32 + 16) + 4);

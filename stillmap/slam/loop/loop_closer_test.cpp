@@ -12,16 +12,12 @@
 namespace stillmap {
 namespace {
 
-const SimulatedWorld& world() {
-  static const SimulatedWorld kWorld({}, simulated_camera());
-  return kWorld;
-}
-
 constexpr ObservationNoise kNoWrongDescriptors{
     .pixel_sigma_px = 0.5, .inverse_depth_sigma = 0.004, .flipped_bits = 10};
 
 bool close(SimulatedMap& simulated, std::vector<LoopEdge>& loops, const LoopMatch& found) {
-  return close_loop(simulated.map, loops, found, world().camera(), loop_measure(world()), {});
+  return close_loop(
+      simulated.map, loops, found, simulated_world().camera(), loop_measure(simulated_world()), {});
 }
 
 // Points of the world that both see, each with a landmark of its own.
@@ -56,9 +52,9 @@ std::size_t wrong_observations(const SimulatedMap& simulated) {
 }
 
 TEST(LoopCloser, TheDriftOfARoundGoes) {
-  SimulatedMap round = drifted_round(world(), {});
+  SimulatedMap round = drifted_round(simulated_world(), {});
   const double before_m = mean_error_m(round);
-  const LoopMatch found = find_loops(round, world()).back();
+  const LoopMatch found = find_loops(round, simulated_world()).back();
   std::vector<LoopEdge> loops;
   ASSERT_TRUE(close(round, loops, found));
   round.map.check_consistency();
@@ -69,7 +65,8 @@ TEST(LoopCloser, TheDriftOfARoundGoes) {
   for (const LandmarkId id : round.map.landmark_ids()) {
     const Landmark& landmark = round.map.landmark(id);
     landmarks_m +=
-        (landmark.p_world - world().points()[true_point(round, landmark)].position).norm();
+        (landmark.p_world - simulated_world().points()[true_point(round, landmark)].position)
+            .norm();
   }
   EXPECT_LT(landmarks_m / static_cast<double>(round.map.landmark_count()), 0.08);
   EXPECT_EQ(round.map.keyframe(KeyframeId(0)).T_world_camera.matrix(), round_pose(0).matrix());
@@ -83,10 +80,10 @@ TEST(LoopCloser, TheDriftOfARoundGoes) {
 
 TEST(LoopCloser, LandmarksOfBothEndsBecomeOne) {
   SimulatedMap round = drifted_round(
-      world(),
+      simulated_world(),
       {.noise = {.pixel_sigma_px = 0.5, .inverse_depth_sigma = 0.004, .flipped_bits = 10}});
   ASSERT_EQ(wrong_observations(round), 0U);
-  const LoopMatch found = find_loops(round, world()).back();
+  const LoopMatch found = find_loops(round, simulated_world()).back();
   const std::size_t landmarks = round.map.landmark_count();
   const std::size_t doubled_before = doubled(round, found.edge.a, found.edge.b);
   ASSERT_GT(doubled_before, 100U);
@@ -126,8 +123,8 @@ std::size_t missing(const SimulatedMap& simulated, KeyframeId a, KeyframeId b) {
 
 TEST(LoopCloser, FeaturesOfOneEndGetTheLandmarksOfTheOther) {
   SimulatedMap round =
-      drifted_round(world(), {.drift = Vector6d::Zero(), .noise = kNoWrongDescriptors});
-  const LoopMatch found = find_loops(round, world()).back();
+      drifted_round(simulated_world(), {.drift = Vector6d::Zero(), .noise = kNoWrongDescriptors});
+  const LoopMatch found = find_loops(round, simulated_world()).back();
   const KeyframeId beside_later(found.edge.b.value - 1), beside_earlier(found.edge.a.value + 1);
   for (const KeyframeId id : {beside_later, beside_earlier}) rob(round, id);
   const std::size_t in_later = missing(round, beside_later, found.edge.a);
@@ -143,15 +140,20 @@ TEST(LoopCloser, FeaturesOfOneEndGetTheLandmarksOfTheOther) {
 }
 
 TEST(LoopCloser, WhatTheLoopMatchedBecomesOneAlsoWhereNothingElseIsLookedFor) {
-  SimulatedMap round = drifted_round(world(), {});
-  const LoopMatch found = find_loops(round, world()).back();
+  SimulatedMap round = drifted_round(simulated_world(), {});
+  const LoopMatch found = find_loops(round, simulated_world()).back();
   for (const KeyframeId id : {found.edge.a, found.edge.b}) rob(round, id);
   const Keyframe earlier = round.map.keyframe(found.edge.a),
                  later = round.map.keyframe(found.edge.b);
   LoopConfig config;
   config.fusion.radius_px = 1e-9;
   std::vector<LoopEdge> loops;
-  ASSERT_TRUE(close_loop(round.map, loops, found, world().camera(), loop_measure(world()), config));
+  ASSERT_TRUE(close_loop(round.map,
+                         loops,
+                         found,
+                         simulated_world().camera(),
+                         loop_measure(simulated_world()),
+                         config));
   round.map.check_consistency();
   int old_kept = 0, taken_over = 0;
   for (const auto& [in_earlier, in_later] : found.matches) {
@@ -167,9 +169,9 @@ TEST(LoopCloser, WhatTheLoopMatchedBecomesOneAlsoWhereNothingElseIsLookedFor) {
 }
 
 TEST(LoopCloser, WhatContradictsTheOthersIsRefusedAndChangesNothing) {
-  SimulatedMap round = drifted_round(world(), {});
+  SimulatedMap round = drifted_round(simulated_world(), {});
   const double before_m = mean_error_m(round);
-  const std::vector<LoopMatch> found = find_loops(round, world());
+  const std::vector<LoopMatch> found = find_loops(round, simulated_world());
   ASSERT_GE(found.size(), 3U);
   std::vector<LoopEdge> loops;
   for (const LoopMatch& right : found) ASSERT_TRUE(close(round, loops, right));
@@ -192,11 +194,11 @@ class LoopCloserOfTwoSubmaps : public testing::Test {
   // Without drift within either: what is left is the error of the loop.
   LoopCloserOfTwoSubmaps()
       : two_(drifted_round(
-            world(),
+            simulated_world(),
             {.drift = Vector6d::Zero(),
              .second_submap_from = 36,
              .T_second_first = make_pose(so3_exp(Eigen::Vector3d(0.5, 1, 2)), {20, 30, 40})})),
-        found_(find_loops(two_, world()).back()) {}
+        found_(find_loops(two_, simulated_world()).back()) {}
 
   void expect_joined() {
     two_.map.check_consistency();
@@ -210,7 +212,8 @@ class LoopCloserOfTwoSubmaps : public testing::Test {
     double farthest_m = 0;
     for (const LandmarkId id : two_.map.landmark_ids()) {
       const Landmark& landmark = two_.map.landmark(id);
-      const Eigen::Vector3d& truth = world().points()[true_point(two_, landmark)].position;
+      const Eigen::Vector3d& truth =
+          simulated_world().points()[true_point(two_, landmark)].position;
       farthest_m = std::max(farthest_m, (landmark.p_world - truth).norm());
     }
     EXPECT_LT(farthest_m, 0.1);

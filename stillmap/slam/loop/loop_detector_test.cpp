@@ -8,13 +8,8 @@
 namespace stillmap {
 namespace {
 
-const SimulatedWorld& world() {
-  static const SimulatedWorld kWorld({}, simulated_camera());
-  return kWorld;
-}
-
 const SimulatedMap& one_submap() {
-  static const SimulatedMap kRound = drifted_round(world(), {});
+  static const SimulatedMap kRound = drifted_round(simulated_world(), {});
   return kRound;
 }
 
@@ -42,7 +37,7 @@ void expect_true_loop(const SimulatedMap& simulated, const LoopMatch& loop) {
 }
 
 TEST(LoopDetector, FindsTheBeginningAtTheEndOfARoundAndNothingBefore) {
-  const std::vector<LoopMatch> loops = find_loops(one_submap(), world());
+  const std::vector<LoopMatch> loops = find_loops(one_submap(), simulated_world());
   ASSERT_FALSE(loops.empty());
   for (const LoopMatch& loop : loops) {
     // Key frames that are more than five apart see nothing in common.
@@ -54,11 +49,11 @@ TEST(LoopDetector, FindsTheBeginningAtTheEndOfARoundAndNothingBefore) {
 
 TEST(LoopDetector, FindsKeyFramesOfAnotherSubmap) {
   const SimulatedMap two = drifted_round(
-      world(),
+      simulated_world(),
       {.drift = Vector6d::Zero(),  // else what a key frame sees is as far off as what made it
        .second_submap_from = 36,
        .T_second_first = make_pose(so3_exp(Eigen::Vector3d(0.5, 1, 2)), {20, 30, 40})});
-  const std::vector<LoopMatch> loops = find_loops(two, world());
+  const std::vector<LoopMatch> loops = find_loops(two, simulated_world());
   ASSERT_FALSE(loops.empty());
   bool of_beginning = false;
   for (const LoopMatch& loop : loops) {
@@ -74,23 +69,23 @@ TEST(LoopDetector, FindsKeyFramesOfAnotherSubmap) {
 }
 
 TEST(LoopDetector, OneImageIsNotEnough) {
-  const std::vector<LoopMatch> at_once = find_loops(one_submap(), world(), after(1));
-  const std::vector<LoopMatch> after_three = find_loops(one_submap(), world(), after(3));
+  const std::vector<LoopMatch> at_once = find_loops(one_submap(), simulated_world(), after(1));
+  const std::vector<LoopMatch> after_three = find_loops(one_submap(), simulated_world(), after(3));
   ASSERT_FALSE(at_once.empty());
   ASSERT_FALSE(after_three.empty());
   EXPECT_GT(after_three.front().edge.b, at_once.front().edge.b);
   const auto never = static_cast<int>(one_submap().map.keyframes().size()) + 1;
-  EXPECT_TRUE(find_loops(one_submap(), world(), after(never)).empty());
+  EXPECT_TRUE(find_loops(one_submap(), simulated_world(), after(never)).empty());
 }
 
 TEST(LoopDetector, NothingBeforeTheRoundIsClosed) {
-  EXPECT_TRUE(find_loops(one_submap(), world(), after(1), 34).empty());
+  EXPECT_TRUE(find_loops(one_submap(), simulated_world(), after(1), 34).empty());
 }
 
 TEST(LoopDetector, ClearedItBeginsAnew) {
-  const KeyframeId first = find_loops(one_submap(), world()).front().edge.b;
+  const KeyframeId first = find_loops(one_submap(), simulated_world()).front().edge.b;
   ASSERT_LT(first, KeyframeId(42));
-  LoopDetector detector({}, world().camera(), loop_measure(world()), 0);
+  LoopDetector detector({}, simulated_world().camera(), loop_measure(simulated_world()), 0);
   PlaceIndex places;
   std::vector<std::uint32_t> found;
   for (const auto& [id, keyframe] : one_submap().map.keyframes()) {
@@ -104,7 +99,7 @@ TEST(LoopDetector, ClearedItBeginsAnew) {
 
 TEST(LoopDetector, PlacesThatAreNotInTheIndexAreNotFound) {
   // The index knows only what the end of the round has seen itself.
-  LoopDetector detector(after(1), world().camera(), loop_measure(world()), 0);
+  LoopDetector detector(after(1), simulated_world().camera(), loop_measure(simulated_world()), 0);
   PlaceIndex places;
   for (std::uint32_t k = 36; k < 44; ++k) {
     const Keyframe& keyframe = one_submap().map.keyframe(KeyframeId(k));

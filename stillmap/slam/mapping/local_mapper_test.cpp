@@ -16,19 +16,14 @@
 namespace stillmap {
 namespace {
 
-constexpr ObservationNoise kNoise{.pixel_sigma_px = 0.5,
-                                  .inverse_depth_sigma = 0.01,
-                                  .missing_depth_share = 0.2,
-                                  .flipped_bits = 10};
+constexpr ObservationNoise kCoarseNoise{.pixel_sigma_px = 0.5,
+                                        .inverse_depth_sigma = 0.01,
+                                        .missing_depth_share = 0.2,
+                                        .flipped_bits = 10};
 
-const SimulatedWorld& world() {
-  static const SimulatedWorld kWorld({}, simulated_camera());
-  return kWorld;
-}
-
-MeasurementModel model() {
+MeasurementModel coarse_model() {
   return MeasurementModel({.pixel_sigma_px = 0.5, .inverse_depth_sigma = 0.01},
-                          world().level_scales());
+                          simulated_world().level_scales());
 }
 
 Eigen::Isometry3d along(double s) {
@@ -40,7 +35,7 @@ TEST(MappingCore, IsTheNewestAndThoseThatShareMost) {
   std::vector<Eigen::Isometry3d> poses;
   for (int k = 0; k < 9; ++k) poses.push_back(along(0.15 * k));
   std::mt19937 rng(1);
-  const SimulatedMap simulated = make_true_map(world(), poses, kNoise, rng);
+  const SimulatedMap simulated = make_true_map(simulated_world(), poses, kCoarseNoise, rng);
   MappingConfig config;
   config.window_keyframes = 5;
   const std::vector<KeyframeId> core = mapping_core(simulated.map, KeyframeId(8), config);
@@ -53,12 +48,13 @@ TEST(MappingCore, IsTheNewestAndThoseThatShareMost) {
 
 // Key frames at slightly wrong poses; each made landmarks of its own from depth, at wrong places.
 SimulatedMap rough_map(int keyframes) {
-  SimulatedMap simulated(world());
+  SimulatedMap simulated(simulated_world());
   std::mt19937 rng(3);
   std::normal_distribution<double> normal;
   for (int k = 0; k < keyframes; ++k) {
     const Eigen::Isometry3d truth = along(0.12 * k);
-    const KeyframeId id = add_bare_keyframe(simulated, truth, world().observe(truth, kNoise, rng));
+    const KeyframeId id =
+        add_bare_keyframe(simulated, truth, simulated_world().observe(truth, kCoarseNoise, rng));
     const std::vector<std::uint32_t>& points = simulated.points[id.index()];
     // What tracking would have found: nine tenths of the known points.
     for (std::uint32_t i = 0; i < points.size(); ++i) {
@@ -72,7 +68,7 @@ SimulatedMap rough_map(int keyframes) {
       const Eigen::Vector3d shift(normal(rng), normal(rng), normal(rng));
       simulated.map.set_pose(id, truth * make_pose(so3_exp(0.005 * turn), 0.02 * shift));
     }
-    create_landmarks_from_depth(simulated.map, id, world().camera(), model(), {});
+    create_landmarks_from_depth(simulated.map, id, simulated_world().camera(), coarse_model(), {});
     for (std::uint32_t i = 0; i < points.size(); ++i) {
       const LandmarkId landmark = simulated.map.keyframe(id).landmarks[i];
       if (landmark.valid()) simulated.landmark_of_point.try_emplace(points[i], landmark);
@@ -139,9 +135,13 @@ TEST(MapLocally, GivesAConsistentAndBetterMap) {
   for (int round = 0; round < 2; ++round) {
     const MappingConfig config;
     const std::vector<KeyframeId> core = mapping_core(simulated.map, KeyframeId(7), config);
-    simulated.map.apply(
-        map_locally(simulated.map.window(core), core, world().camera(), {}, model(), config)
-            .update);
+    simulated.map.apply(map_locally(simulated.map.window(core),
+                                    core,
+                                    simulated_world().camera(),
+                                    {},
+                                    coarse_model(),
+                                    config)
+                            .update);
     simulated.map.check_consistency();
   }
   EXPECT_LT(keyframe_rmse_m(simulated), 0.3 * before_m);
@@ -156,7 +156,12 @@ TEST(MapLocally, IsTheSameForTheSameWindow) {
   MappingConfig config;
   const std::vector<KeyframeId> core = mapping_core(simulated.map, KeyframeId(5), config);
   const auto run = [&] {
-    return map_locally(simulated.map.window(core), core, world().camera(), {}, model(), config)
+    return map_locally(simulated.map.window(core),
+                       core,
+                       simulated_world().camera(),
+                       {},
+                       coarse_model(),
+                       config)
         .update;
   };
   const MapUpdate a = run(), b = run();
@@ -177,9 +182,9 @@ TEST(MapLocally, IsTheSameForTheSameWindow) {
 class SmallSlam {
  public:
   explicit SmallSlam(const ShutterConfig& config = {})
-      : simulated_(world()),
-        tracker_({}, {}, world().camera(), model(), 0),
-        times_(config, world().camera()) {}
+      : simulated_(simulated_world()),
+        tracker_({}, {}, simulated_world().camera(), coarse_model(), 0),
+        times_(config, simulated_world().camera()) {}
 
   TrackedFrame process(std::uint32_t k, double time_s, const Observed& seen) {
     if (pending_ && k == due_) apply_pending();
@@ -218,12 +223,16 @@ class SmallSlam {
       simulated_.map.add_observation(tracked.landmarks[i], {id, i});
       simulated_.map.refresh(tracked.landmarks[i]);
     }
-    create_landmarks_from_depth(simulated_.map, id, world().camera(), model(), {});
+    create_landmarks_from_depth(simulated_.map, id, simulated_world().camera(), coarse_model(), {});
     (void)simulated_.map.take_changes();
     tracker_.set_reference(id, simulated_.map);
     const std::vector<KeyframeId> core = mapping_core(simulated_.map, id, {});
-    pending_ = map_locally(
-        simulated_.map.window(core), core, world().camera(), times_.times(), model(), {});
+    pending_ = map_locally(simulated_.map.window(core),
+                           core,
+                           simulated_world().camera(),
+                           times_.times(),
+                           coarse_model(),
+                           {});
     due_ = k + 3;
     since_keyframe_ = {};
   }
@@ -263,7 +272,9 @@ FollowErrors follow(SmallSlam& slam, double readout_s) {
   for (std::uint32_t k = 0; k < 900; ++k) {
     const double time_s = k / 30.0;
     const TrackedFrame tracked = slam.process(
-        k, time_s, world().observe_rolling(looking_about, time_s, readout_s, kNoise, rng));
+        k,
+        time_s,
+        simulated_world().observe_rolling(looking_about, time_s, readout_s, kCoarseNoise, rng));
     EXPECT_TRUE(has_pose(tracked)) << k;
     if (!has_pose(tracked)) break;
     const double error_m =
@@ -278,7 +289,7 @@ FollowErrors follow(SmallSlam& slam, double readout_s) {
 TEST(MapLocally, WithTrackingBuildsATrueMapOfARoom) {
   SmallSlam slam;
   EXPECT_LT(follow(slam, 0).worst_m, 0.02);
-  std::vector<std::uint32_t> all(world().points().size());
+  std::vector<std::uint32_t> all(simulated_world().points().size());
   std::iota(all.begin(), all.end(), 0U);
   const Purity purity = purity_of(slam.simulated(), all);
   const auto landmarks = static_cast<double>(slam.simulated().map.landmark_count());

@@ -11,20 +11,11 @@
 namespace stillmap {
 namespace {
 
-constexpr ObservationNoise kNoise{.pixel_sigma_px = 0.5, .inverse_depth_sigma = 0.004};
+constexpr ObservationNoise kFineNoise{.pixel_sigma_px = 0.5, .inverse_depth_sigma = 0.004};
 
-const SimulatedWorld& world() {
-  static const SimulatedWorld kWorld({}, simulated_camera());
-  return kWorld;
-}
-
-MeasurementModel model() {
+MeasurementModel fine_model() {
   return MeasurementModel({.pixel_sigma_px = 0.5, .inverse_depth_sigma = 0.004},
-                          world().level_scales());
-}
-
-KeyframeId kf(std::uint32_t value) {
-  return KeyframeId(value);
+                          simulated_world().level_scales());
 }
 
 // Six key frames along a bow, as they truly are but for the noise of their features.
@@ -35,7 +26,7 @@ SimulatedMap bow() {
                               Eigen::Vector3d(0.12 * k, 0.03 * k, -0.05 * k)));
   }
   std::mt19937 rng(1);
-  return make_true_map(world(), poses, kNoise, rng);
+  return make_true_map(simulated_world(), poses, kFineNoise, rng);
 }
 
 // Moves key frames by about 2 cm and 0.6 degrees, and all landmarks by about 7 cm.
@@ -72,7 +63,8 @@ Errors errors_of(const SimulatedMap& simulated) {
     const Landmark& landmark = simulated.map.landmark(id);
     if (landmark.observations.size() < 4) continue;
     ++landmarks;
-    const Eigen::Vector3d& truth = world().points()[true_point(simulated, landmark)].position;
+    const Eigen::Vector3d& truth =
+        simulated_world().points()[true_point(simulated, landmark)].position;
     errors.landmarks_m += (landmark.p_world - truth).squaredNorm();
   }
   const auto keyframes = static_cast<double>(simulated.map.keyframes().size());
@@ -83,10 +75,11 @@ Errors errors_of(const SimulatedMap& simulated) {
 
 TEST(AdjustMap, BringsPosesAndPointsBackToTheTruth) {
   SimulatedMap simulated = bow();
-  const std::vector<KeyframeId> free = {kf(1), kf(2), kf(3), kf(4), kf(5)};
+  const std::vector<KeyframeId> free = {
+      KeyframeId(1), KeyframeId(2), KeyframeId(3), KeyframeId(4), KeyframeId(5)};
   perturb(simulated, free);
   const Errors before = errors_of(simulated);
-  adjust_map(simulated.map, free, world().camera(), model(), {});
+  adjust_map(simulated.map, free, simulated_world().camera(), fine_model(), {});
   const Errors after = errors_of(simulated);
   EXPECT_LT(after.keyframes_m, 0.15 * before.keyframes_m);
   EXPECT_LT(after.keyframes_rad, 0.15 * before.keyframes_rad);
@@ -96,12 +89,16 @@ TEST(AdjustMap, BringsPosesAndPointsBackToTheTruth) {
 
 TEST(AdjustMap, HoldsTheFirstKeyframeAndAllThatAreNotFree) {
   SimulatedMap simulated = bow();
-  perturb(simulated, std::vector{kf(0), kf(1), kf(2), kf(3)});
+  perturb(simulated, std::vector{KeyframeId(0), KeyframeId(1), KeyframeId(2), KeyframeId(3)});
   const SimulatedMap before = simulated;
-  adjust_map(simulated.map, std::vector{kf(0), kf(3)}, world().camera(), model(), {});
+  adjust_map(simulated.map,
+             std::vector{KeyframeId(0), KeyframeId(3)},
+             simulated_world().camera(),
+             fine_model(),
+             {});
   for (const auto& [id, keyframe] : simulated.map.keyframes()) {
     const Eigen::Isometry3d& was = before.map.keyframe(id).T_world_camera;
-    EXPECT_EQ(keyframe.T_world_camera.isApprox(was, 0), id != kf(3)) << id.value;
+    EXPECT_EQ(keyframe.T_world_camera.isApprox(was, 0), id != KeyframeId(3)) << id.value;
   }
 }
 
@@ -109,12 +106,13 @@ TEST(AdjustMap, MovesOnlyLandmarksThatAFreeKeyframeSees) {
   SimulatedMap simulated = bow();
   perturb(simulated, {});
   const SimulatedMap before = simulated;
-  adjust_map(simulated.map, std::vector{kf(5)}, world().camera(), model(), {});
+  adjust_map(
+      simulated.map, std::vector{KeyframeId(5)}, simulated_world().camera(), fine_model(), {});
   int moved = 0, stayed = 0;
   for (const LandmarkId id : simulated.map.landmark_ids()) {
     bool seen = false;
     for (const Observation& o : before.map.landmark(id).observations) {
-      seen = seen || o.keyframe == kf(5);
+      seen = seen || o.keyframe == KeyframeId(5);
     }
     const bool same = simulated.map.landmark(id).p_world == before.map.landmark(id).p_world;
     EXPECT_EQ(same, !seen) << id.value;
@@ -128,15 +126,15 @@ TEST(AdjustMap, RemovesObservationsOfOtherPoints) {
   SimulatedMap simulated = bow();
   // Swaps what two far-apart features of key frame 3 see, a dozen times.
   std::set<LandmarkId> mixed;
-  const std::vector<LandmarkId> seen = simulated.map.keyframe(kf(3)).landmarks;
+  const std::vector<LandmarkId> seen = simulated.map.keyframe(KeyframeId(3)).landmarks;
   for (std::uint32_t i = 0; i < 24; i += 2) {
     const LandmarkId a = seen[i], b = seen[i + 1];
     if (simulated.map.landmark(a).observations.size() < 4) continue;
     if (simulated.map.landmark(b).observations.size() < 4) continue;
-    simulated.map.remove_observation(a, kf(3));
-    simulated.map.remove_observation(b, kf(3));
-    ASSERT_TRUE(simulated.map.add_observation(a, {kf(3), i + 1}));
-    ASSERT_TRUE(simulated.map.add_observation(b, {kf(3), i}));
+    simulated.map.remove_observation(a, KeyframeId(3));
+    simulated.map.remove_observation(b, KeyframeId(3));
+    ASSERT_TRUE(simulated.map.add_observation(a, {KeyframeId(3), i + 1}));
+    ASSERT_TRUE(simulated.map.add_observation(b, {KeyframeId(3), i}));
     mixed.insert({a, b});
   }
   ASSERT_GT(mixed.size(), 6U);
@@ -144,13 +142,17 @@ TEST(AdjustMap, RemovesObservationsOfOtherPoints) {
   for (const LandmarkId id : simulated.map.landmark_ids()) {
     before += simulated.map.landmark(id).observations.size();
   }
-  adjust_map(
-      simulated.map, std::vector{kf(1), kf(2), kf(3), kf(4), kf(5)}, world().camera(), model(), {});
+  adjust_map(simulated.map,
+             std::vector{KeyframeId(1), KeyframeId(2), KeyframeId(3), KeyframeId(4), KeyframeId(5)},
+             simulated_world().camera(),
+             fine_model(),
+             {});
   for (const LandmarkId id : mixed) {
     const Landmark& landmark = simulated.map.landmark(id);
-    for (const Observation& o : landmark.observations) EXPECT_NE(o.keyframe, kf(3));
+    for (const Observation& o : landmark.observations) EXPECT_NE(o.keyframe, KeyframeId(3));
     EXPECT_LT(
-        (landmark.p_world - world().points()[true_point(simulated, landmark)].position).norm(),
+        (landmark.p_world - simulated_world().points()[true_point(simulated, landmark)].position)
+            .norm(),
         0.1);
   }
   for (const LandmarkId id : simulated.map.landmark_ids()) {
@@ -162,9 +164,10 @@ TEST(AdjustMap, RemovesObservationsOfOtherPoints) {
 
 TEST(AdjustMap, RefreshesWhatItMoved) {
   SimulatedMap simulated = bow();
-  const std::vector<KeyframeId> free = {kf(1), kf(2), kf(3), kf(4), kf(5)};
+  const std::vector<KeyframeId> free = {
+      KeyframeId(1), KeyframeId(2), KeyframeId(3), KeyframeId(4), KeyframeId(5)};
   perturb(simulated, free);
-  adjust_map(simulated.map, free, world().camera(), model(), {});
+  adjust_map(simulated.map, free, simulated_world().camera(), fine_model(), {});
   for (const LandmarkId id : simulated.map.landmark_ids()) {
     const Landmark adjusted = simulated.map.landmark(id);
     simulated.map.refresh(id);

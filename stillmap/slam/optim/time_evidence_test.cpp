@@ -32,8 +32,8 @@ MeasurementModel model() {
 }
 
 CameraVelocity velocity_at(const CameraPath& path, double t) {
-  constexpr double kStep_s = 1e-3;
-  return mean_velocity(path(t - kStep_s).inverse() * path(t + kStep_s), 2 * kStep_s);
+  constexpr double kHalf_s = 1e-3;
+  return mean_velocity(path(t - kHalf_s).inverse() * path(t + kHalf_s), 2 * kHalf_s);
 }
 
 constexpr ObservationNoise kNoise{.pixel_sigma_px = 0.3, .missing_depth_share = 0.2};

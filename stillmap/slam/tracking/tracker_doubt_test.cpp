@@ -30,7 +30,7 @@ TEST(Tracker, UsesDoubtedFeaturesWhereTheOthersAreTooFew) {
     SimulatedWalk walk(path, {});
     int tracked = 0;
     for (int k = 1; k <= 30; ++k) {
-      const Features seen = walk.observe(k, kNoise).features;
+      const Features seen = walk.observe(k, kWalkNoise).features;
       const MoreFeatures more = [&](const Features& own) -> std::optional<Features> {
         Features doubted = part_of(seen, kEvery, true);
         doubted.trust.assign(doubted.size(), 0.3F);
@@ -55,7 +55,7 @@ TEST(Tracker, TakesNoPoseThatTheTrustedFeaturesContradict) {
     SimulatedWalk walk(path, config);
     double worst_m = 0;
     for (int k = 1; k <= 30; ++k) {
-      const Features seen = walk.observe(k, kNoise).features;
+      const Features seen = walk.observe(k, kWalkNoise).features;
       const MoreFeatures more = [&](const Features& own) -> std::optional<Features> {
         Features doubted = moved(part_of(seen, 5, true));
         doubted.trust.assign(doubted.size(), 1.0F);
@@ -77,7 +77,7 @@ TEST(Tracker, FewTrustedFeaturesYieldToManyInWhichThereIsTrust) {
   constexpr std::size_t kEvery = 25;  // leaves less than min_inliers, but enough to begin with
   SimulatedWalk walk(path, {});
   for (int k = 1; k <= 30; ++k) {
-    const Features seen = walk.observe(k, kNoise).features;
+    const Features seen = walk.observe(k, kWalkNoise).features;
     const MoreFeatures more = [&](const Features& own) -> std::optional<Features> {
       Features doubted = part_of(seen, kEvery, true);
       doubted.trust.assign(doubted.size(), 0.8F);

@@ -16,7 +16,7 @@ TEST(Tracker, FollowsASmoothPathAsWellAsTheNoiseAllows) {
   double normalized = 0;
   constexpr int kFrames = 150;
   for (int k = 1; k <= kFrames; ++k) {
-    const Observed seen = walk.observe(k, kNoise);
+    const Observed seen = walk.observe(k, kWalkNoise);
     const TrackedFrame frame = walk.track(k, seen.features);
     ASSERT_EQ(frame.status, TrackingStatus::kTracked) << k;
     EXPECT_LT(walk.error_m(frame), 0.015) << k;
@@ -36,7 +36,7 @@ TEST(Tracker, FollowsASmoothPathAsWellAsTheNoiseAllows) {
 
 TEST(Tracker, ExpectsTheLandmarksThatItFindsAndReadsTheMapOnly) {
   SimulatedWalk walk(path, {});
-  const TrackedFrame frame = walk.track(1, walk.observe(1, kNoise).features);
+  const TrackedFrame frame = walk.track(1, walk.observe(1, kWalkNoise).features);
   const std::set<LandmarkId> expected(frame.expected.begin(), frame.expected.end());
   EXPECT_EQ(expected.size(), frame.expected.size());
   int found = 0;
@@ -51,7 +51,7 @@ TEST(Tracker, ExpectsTheLandmarksThatItFindsAndReadsTheMapOnly) {
 
 TEST(Tracker, StandsFortyPercentOfWrongDescriptors) {
   SimulatedWalk walk(path, {});
-  ObservationNoise noise = kNoise;
+  ObservationNoise noise = kWalkNoise;
   noise.wrong_descriptor_share = 0.4;
   double normalized = 0;
   for (int k = 1; k <= 60; ++k) {
@@ -68,7 +68,7 @@ TEST(Tracker, FollowsAPatternWhoseCornersLookAlike) {
   // frame tells where each is.
   const SimulatedWorld world({.kinds = 20}, simulated_camera());
   std::mt19937 rng(2);
-  const Observed first = world.observe(path(0), kNoise, rng);
+  const Observed first = world.observe(path(0), kWalkNoise, rng);
   SimulatedMap simulated(world);
   add_true_keyframe(simulated, world, path(0), first);
   Tracker tracker = make_tracker();
@@ -80,7 +80,7 @@ TEST(Tracker, FollowsAPatternWhoseCornersLookAlike) {
     frame.stamp.seconds = k * kFrameInterval_s;
     const Eigen::Isometry3d truth = path(frame.stamp.seconds);
     const TrackedFrame tracked = tracker.track(
-        frame, world.observe(truth, kNoise, rng).features, simulated.map, PlaceIndex());
+        frame, world.observe(truth, kWalkNoise, rng).features, simulated.map, PlaceIndex());
     ASSERT_EQ(tracked.status, TrackingStatus::kTracked) << k;
     EXPECT_LT((tracked.T_world_camera.translation() - truth.translation()).norm(), 0.02);
   }
@@ -89,7 +89,7 @@ TEST(Tracker, FollowsAPatternWhoseCornersLookAlike) {
 TEST(Tracker, StandsThirtyPercentOfMatchesThatMoved) {
   SimulatedWalk walk(path, {});
   for (int k = 1; k <= 60; ++k) {
-    Features features = walk.observe(k, kNoise).features;
+    Features features = walk.observe(k, kWalkNoise).features;
     for (std::size_t i = 0; i < features.size(); ++i) {
       if (i % 10 >= 3) continue;
       features.raw_px[i].x() += 9.0F;  // by the same shift, as on a passing person
@@ -105,7 +105,7 @@ TEST(Tracker, IsMarkedLostWithoutFeaturesAndFindsBack) {
   SimulatedWalk walk(path, {});
   for (int k = 1; k <= 40; ++k) {
     const bool dark = k > 20 && k <= 30;
-    const Observed seen = dark ? Observed{} : walk.observe(k, kNoise);
+    const Observed seen = dark ? Observed{} : walk.observe(k, kWalkNoise);
     const TrackedFrame frame = walk.track(k, seen.features);
     const TrackingStatus expected = dark      ? TrackingStatus::kLost
                                     : k == 31 ? TrackingStatus::kRelocalized
@@ -120,10 +120,10 @@ TEST(Tracker, IsMarkedLostWithoutFeaturesAndFindsBack) {
 
 TEST(Tracker, FindsBackAtAnotherPlaceThanWhereItWasLost) {
   SimulatedWalk walk(path, {});
-  for (int k = 1; k <= 5; ++k) (void)walk.track(k, walk.observe(k, kNoise).features);
+  for (int k = 1; k <= 5; ++k) (void)walk.track(k, walk.observe(k, kWalkNoise).features);
   ASSERT_EQ(walk.track(6, {}).status, TrackingStatus::kLost);
   // Two seconds later, although the stamps do not say so: constant velocity does not lead there.
-  const TrackedFrame frame = walk.track(66, walk.observe(66, kNoise).features);
+  const TrackedFrame frame = walk.track(66, walk.observe(66, kWalkNoise).features);
   EXPECT_EQ(frame.status, TrackingStatus::kRelocalized);
   EXPECT_LT(walk.error_m(frame), 0.015);
 }
@@ -230,7 +230,7 @@ double rolling_rmse_m(double assumed_s) {
   walk.assume({assumed_s, 0});
   double sum = 0;
   for (int k = 1; k <= 240; ++k) {
-    const TrackedFrame frame = walk.track(k, walk.observe(k, kNoise).features);
+    const TrackedFrame frame = walk.track(k, walk.observe(k, kWalkNoise).features);
     EXPECT_EQ(frame.status, TrackingStatus::kTracked) << k;
     EXPECT_EQ(frame.timing.assumed.readout_s, assumed_s);
     if (k > 120) sum += walk.error_m(frame) * walk.error_m(frame) / 120;

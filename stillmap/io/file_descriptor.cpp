@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "stillmap/io/descriptor.hpp"
+#include "stillmap/io/file_descriptor.hpp"
 
 #include <cerrno>
 #include <string>
@@ -11,11 +11,11 @@
 
 namespace stillmap {
 
-Descriptor::~Descriptor() {
+FileDescriptor::~FileDescriptor() {
   if (fd_ >= 0) ::close(fd_);
 }
 
-int Descriptor::close() {
+int FileDescriptor::close() {
   return ::close(std::exchange(fd_, -1));
 }
 
@@ -23,7 +23,9 @@ std::string error_text(int error_number) {
   return std::generic_category().message(error_number);
 }
 
-void write_all(const Descriptor& file, std::string_view bytes, const std::filesystem::path& shown) {
+void write_all(const FileDescriptor& file,
+               std::string_view bytes,
+               const std::filesystem::path& shown) {
   while (!bytes.empty()) {
     const ssize_t written = ::write(file.get(), bytes.data(), bytes.size());
     if (written < 0 && errno == EINTR) continue;
@@ -33,7 +35,7 @@ void write_all(const Descriptor& file, std::string_view bytes, const std::filesy
 }
 
 // Devices and some file systems have nothing to flush.
-void close_written(Descriptor& file, bool flush, const std::filesystem::path& shown) {
+void close_written(FileDescriptor& file, bool flush, const std::filesystem::path& shown) {
   const bool flushed =
       !flush || ::fsync(file.get()) == 0 || errno == EINVAL || errno == ENOSYS || errno == EROFS;
   const int problem = errno;

@@ -9,17 +9,17 @@
 namespace stillmap {
 
 /// A file descriptor that its destructor closes.
-class Descriptor {
+class FileDescriptor {
  public:
-  explicit Descriptor(int fd = -1) : fd_(fd) {}
-  Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  Descriptor& operator=(Descriptor&& other) noexcept {
+  explicit FileDescriptor(int fd = -1) : fd_(fd) {}
+  FileDescriptor(FileDescriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+  FileDescriptor(const FileDescriptor&) = delete;
+  FileDescriptor& operator=(const FileDescriptor&) = delete;
+  FileDescriptor& operator=(FileDescriptor&& other) noexcept {
     std::swap(fd_, other.fd_);
     return *this;
   }
-  ~Descriptor();
+  ~FileDescriptor();
 
   [[nodiscard]] int get() const { return fd_; }
   [[nodiscard]] int close();
@@ -32,9 +32,11 @@ class Descriptor {
 [[nodiscard]] std::string error_text(int error_number);
 
 /// Writes all bytes. Messages call the file `shown`.
-void write_all(const Descriptor& file, std::string_view bytes, const std::filesystem::path& shown);
+void write_all(const FileDescriptor& file,
+               std::string_view bytes,
+               const std::filesystem::path& shown);
 
 /// Closes the file, where `flush` once its bytes are on the disk.
-void close_written(Descriptor& file, bool flush, const std::filesystem::path& shown);
+void close_written(FileDescriptor& file, bool flush, const std::filesystem::path& shown);
 
 }  // namespace stillmap
