@@ -104,7 +104,7 @@ const Outcome& early() {
   return kEarly;
 }
 
-constexpr std::uint32_t kWays = 7;
+constexpr std::uint32_t kWays = 10;
 
 const Outcome& late() {
   static const Outcome kLate = go(kWays, settings());
