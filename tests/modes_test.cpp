@@ -7,6 +7,7 @@
 
 #include "stillmap/session/system_config.hpp"
 #include "tests/support/cli_fixture.hpp"
+#include "tests/support/files.hpp"
 
 namespace stillmap {
 namespace {
@@ -44,24 +45,33 @@ TEST(PaperMode, HasTheConstantsOfTheArticle) {
 /// Two people walk through the office while a camera with a quarter of the pixels moves.
 class Modes : public Cli {
  protected:
-  Modes() {
-    const Outcome outcome = run(
-        "synth office --scene walking_xyz --frames 90 --size 320x240 --assets none --detections "
-        "imperfect");
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  }
-
   [[nodiscard]] json report(const std::string& mode) const {
-    const Outcome outcome =
-        run("run office --out out --segmenter detections:office/detections --dynamics " + mode);
+    const std::string office = this->office().string();
+    const Outcome outcome = run("run " + office + " --out out --segmenter detections:" + office +
+                                "/detections --dynamics " + mode);
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     return json::parse(content("out/report.json"));
   }
+  [[nodiscard]] const json& report_of_off() const {
+    static const json kReport = report("off");
+    return kReport;
+  }
   [[nodiscard]] static double ate_m(const json& report) { return report["ate"]["rmse"]; }
+
+ private:
+  // Rendered once for all tests.
+  [[nodiscard]] std::filesystem::path office() const {
+    static const TemporaryFolder kFolder;
+    static const Outcome kRendered = run("synth " + (kFolder.path() / "office").string() +
+                                         " --scene walking_xyz --frames 90 --size 320x240 "
+                                         "--assets none --detections imperfect");
+    EXPECT_EQ(kRendered.exit_code, 0) << kRendered.err;
+    return kFolder.path() / "office";
+  }
 };
 
 TEST_F(Modes, PaperKeepsPeopleOutOfPoseAndMap) {
-  const json off = report("off"), paper = report("paper");
+  const json &off = report_of_off(), paper = report("paper");
   EXPECT_EQ(paper["frames"]["ratio"], 1.0);
   EXPECT_LT(ate_m(paper), 0.009);
   EXPECT_GT(ate_m(off), 1.4 * ate_m(paper));
@@ -73,7 +83,7 @@ TEST_F(Modes, PaperKeepsPeopleOutOfPoseAndMap) {
 }
 
 TEST_F(Modes, ThePeersKeepPeopleOutOfThePose) {
-  const json off = report("off");
+  const json& off = report_of_off();
   for (const char* mode : {"ds-slam", "dynaslam"}) {
     const json peer = report(mode);
     EXPECT_EQ(peer["frames"]["ratio"], 1.0) << mode;

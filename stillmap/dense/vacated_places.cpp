@@ -197,12 +197,10 @@ std::vector<VacatedPlace> vacated_places(std::span<const KnownObject> objects,
 
 PointCloud without_vacated(const PointCloud& map,
                            std::span<const KnownObject> objects,
-                           std::span<const VacatedPlace> places,
-                           double confidence) {
+                           std::span<const VacatedPlace> places) {
   std::vector<bool> gone(map.size(), false);
   for (const VacatedPlace& place : places) {
-    if (place.confidence < confidence) continue;
-    mark_gone(map, objects, place.left, gone);
+    if (place.counts()) mark_gone(map, objects, place.left, gone);
   }
   return selected_points(map, [&](std::size_t i) { return !gone[i]; });
 }

@@ -35,14 +35,13 @@ namespace stillmap {
                                                        const CameraModel& camera,
                                                        const FreeSpaceConfig& config);
 
-/// The map without what stood at places vacated with at least that confidence: points within 25 cm
+/// The map without what stood at the places that count as vacated: points within 25 cm
 /// of the object's extent, and of no similar object's nearer, that have a similar class as their
 /// label, and unlabelled ones within 2 cm of these, by cubes of that edge: masks lack rims. A map
 /// without labels stays as it is.
 [[nodiscard]] PointCloud without_vacated(const PointCloud& map,
                                          std::span<const KnownObject> objects,
-                                         std::span<const VacatedPlace> places,
-                                         double confidence = kVacatedFrom);
+                                         std::span<const VacatedPlace> places);
 
 /// A map, and the places that things have left for others, whatever the confidence.
 struct MapWithoutVacated {

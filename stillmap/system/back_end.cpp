@@ -135,7 +135,7 @@ void BackEnd::smooth_velocity(const Keyframe& keyframe) {
         {after_s, keyframe.T_world_camera.inverse() * T_world_frame(session_, frame)});
   }
   if (motions.size() < 2) return;
-  FrameTiming timing = keyframe.timing;
+  FeatureTiming timing = keyframe.timing;
   timing.smooth_velocity = fitted_velocity(motions);
   session_.map.set_features(keyframe.id, keyframe.features, timing);
 }

@@ -80,8 +80,8 @@ struct RunResult {
   bool lost_at_end = false;          ///< the last frame has no pose
   /// The tracks in frames' results that turned out to be of one object, in the order of finding.
   std::vector<UnitedTracks> united_tracks;
-  /// Places in the map that nobody looked at again after their things had come elsewhere. From a
-  /// confidence of kVacatedFrom on, the things at these places are not in the map.
+  /// Places in the map that nobody looked at again after their things had come elsewhere. The
+  /// things at those that count are not in the map.
   std::vector<VacatedPlace> vacated;
 };
 

@@ -28,7 +28,7 @@ bool is_identity(const Eigen::Isometry3d& T) {
 /// The first `count` frames from a record on, by submap.
 std::vector<Stretch> stretches(const Session& session,
                                std::size_t first_record,
-                               const std::deque<MeasuredFrame>& measured,
+                               const std::deque<PoseEvidence>& measured,
                                const CameraTimes& times,
                                std::size_t count) {
   std::map<SubmapId, Stretch> by_submap;
@@ -64,7 +64,7 @@ SmoothingStage SmoothingStage::inline_copy() const {
   return copy;
 }
 
-void SmoothingStage::add(const MeasuredFrame& frame) {
+void SmoothingStage::add(const PoseEvidence& frame) {
   if (smooths_) waiting_.push_back(frame);
 }
 

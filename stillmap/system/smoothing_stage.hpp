@@ -15,7 +15,7 @@
 namespace stillmap {
 
 /// What is known of a recorded pose besides the pose.
-struct MeasuredFrame {
+struct PoseEvidence {
   /// Of a step of T_camera_world by perturb_left(), as far as its features' errors are independent.
   Matrix6d information = Matrix6d::Zero();
   TimeCorrection time_correction;  ///< of its pose relative to its reference
@@ -41,7 +41,7 @@ class SmoothingStage {
   /// The run's frames are those from this record on. Only before the first add().
   void begin(std::size_t first_record) { first_record_ = first_record; }
   /// Adds what is known of the next recorded pose.
-  void add(const MeasuredFrame& frame);
+  void add(const PoseEvidence& frame);
   /// Takes over what is due, and begins to smooth the earliest poses where too many wait.
   void process(Session& session, const CameraTimes& times, std::int64_t frame_number);
   /// Takes over all work, and smooths all poses that wait.
@@ -61,7 +61,7 @@ class SmoothingStage {
   bool smooths_;
   std::size_t most_;
   std::size_t first_record_ = 0;  // that waits
-  std::deque<MeasuredFrame> waiting_;
+  std::deque<PoseEvidence> waiting_;
   JobLedger<Corrections> jobs_;
 };
 

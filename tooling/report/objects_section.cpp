@@ -41,14 +41,14 @@ std::string row_html(const ObjectSummary& object) {
 std::string vacated_html(const std::vector<VacatedPlace>& places) {
   std::string text;
   for (const VacatedPlace& place : places) {
-    const bool removed = place.confidence >= kVacatedFrom;
     text += fmt::format(
         "<p class=\"note\">#{} left its place while nobody looked, and is #{} now, with a "
         "confidence of {:.2f}: {}.</p>",
         place.left.value,
         place.found.value,
         place.confidence,
-        removed ? "its old place is not in the map" : "too little, both places are in the map");
+        place.counts() ? "its old place is not in the map"
+                       : "too little, both places are in the map");
   }
   return text;
 }

@@ -128,7 +128,7 @@ Json vacated_json(const std::vector<VacatedPlace>& places) {
     all.push_back({{"track", place.left.value},
                    {"found_as", place.found.value},
                    {"confidence", place.confidence},
-                   {"removed", place.confidence >= kVacatedFrom}});
+                   {"removed", place.counts()}});
   }
   return all;
 }

@@ -90,9 +90,11 @@ struct VacatedPlace {
   TrackId left;           ///< of the object at that place
   TrackId found;          ///< and of the one that it probably is now
   double confidence = 0;  ///< 0 to 1
-};
 
-/// The confidence from which a place counts as vacated, so that the thing at it is not in the map.
-inline constexpr double kVacatedFrom = 0.6;
+  /// The confidence from which a place counts as vacated, so that the thing at it is not in the
+  /// map.
+  static constexpr double kCountsFrom = 0.6;
+  [[nodiscard]] bool counts() const { return confidence >= kCountsFrom; }
+};
 
 }  // namespace stillmap

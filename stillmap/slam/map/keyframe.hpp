@@ -8,8 +8,8 @@
 
 #include "stillmap/core/ids.hpp"
 #include "stillmap/core/trajectory.hpp"
+#include "stillmap/slam/features/feature_timing.hpp"
 #include "stillmap/slam/features/features.hpp"
-#include "stillmap/slam/features/frame_timing.hpp"
 
 namespace stillmap {
 
@@ -22,7 +22,7 @@ struct Keyframe {
   SubmapId submap{0};
   bool is_origin = false;  ///< the first of its submap; adjustment keeps its pose
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  FrameTiming timing;  ///< of `features`; zero in a loaded map
+  FeatureTiming timing;  ///< of `features`; zero in a loaded map
   FeaturesPtr features;
   std::vector<LandmarkId> landmarks;  ///< per feature; invalid where it observes none
 };

@@ -235,7 +235,7 @@ void Map::join_submaps(SubmapId gone, SubmapId into, const Eigen::Isometry3d& T_
   }
 }
 
-void Map::set_features(KeyframeId id, FeaturesPtr features, const FrameTiming& timing) {
+void Map::set_features(KeyframeId id, FeaturesPtr features, const FeatureTiming& timing) {
   Keyframe& keyframe = keyframes_.at(id);
   STILLMAP_CHECK(features->size() == keyframe.features->size());
   keyframe.features = std::move(features);

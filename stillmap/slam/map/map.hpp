@@ -73,7 +73,7 @@ class Map {
   /// Drops a key frame that is no origin. Frames that refer to it are fixed to `anchor`.
   void remove_keyframe(KeyframeId id, KeyframeId anchor);
   /// Replaces the features of a key frame by the same ones at corrected places.
-  void set_features(KeyframeId id, FeaturesPtr features, const FrameTiming& timing);
+  void set_features(KeyframeId id, FeaturesPtr features, const FeatureTiming& timing);
   void set_pose(KeyframeId id, const Eigen::Isometry3d& T_world_camera);
   void set_position(LandmarkId id, const Eigen::Vector3d& p_world);
   /// Moves everything in submap `gone` into another submap, which keeps its one origin. Not for

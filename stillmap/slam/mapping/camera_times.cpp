@@ -72,7 +72,7 @@ void correct_times(Map& window,
   for (const KeyframeId id : core) {
     const Keyframe& keyframe = window.keyframe(id);
     if (!moves(keyframe.timing.velocity) || !differs(keyframe.timing.assumed, times)) continue;
-    FrameTiming timing = keyframe.timing;
+    FeatureTiming timing = keyframe.timing;
     timing.assumed = times;
     window.set_features(
         id,

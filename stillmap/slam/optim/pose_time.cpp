@@ -5,7 +5,7 @@
 
 namespace stillmap {
 
-Features at_pose_time(Features features, const CameraModel& camera, const FrameTiming& timing) {
+Features at_pose_time(Features features, const CameraModel& camera, const FeatureTiming& timing) {
   const double depth_after_s = timing.depth_after_color_s();
   for (std::size_t i = 0; i < features.size(); ++i) {
     const bool known = features.sensor_depth_m[i] > 0;

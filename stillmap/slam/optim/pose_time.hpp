@@ -2,8 +2,8 @@
 #pragma once
 
 #include "stillmap/geometry/camera.hpp"
+#include "stillmap/slam/features/feature_timing.hpp"
 #include "stillmap/slam/features/features.hpp"
-#include "stillmap/slam/features/frame_timing.hpp"
 
 namespace stillmap {
 
@@ -16,7 +16,7 @@ namespace stillmap {
 /// Features without depth are only rotated.
 [[nodiscard]] Features at_pose_time(Features features,
                                     const CameraModel& camera,
-                                    const FrameTiming& timing);
+                                    const FeatureTiming& timing);
 
 /// The velocity that at_pose_time() corrects a feature for.
 [[nodiscard]] inline CameraVelocity corrected_velocity(CameraVelocity velocity, bool has_depth) {

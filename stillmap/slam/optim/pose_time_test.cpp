@@ -19,7 +19,7 @@ CameraVelocity steady_velocity() {
   return {{0.4, -0.3, 0.5}, {0.2, -0.4, 0.3}};
 }
 
-FrameTiming rolling(double readout_s, const CameraVelocity& velocity) {
+FeatureTiming rolling(double readout_s, const CameraVelocity& velocity) {
   return {velocity, velocity, 0, {readout_s, 0}};
 }
 
@@ -109,7 +109,7 @@ TEST(AtPoseTime, BringsLateDepthToTheTimeOfThePose) {
     seen.features.sensor_depth_m[i] = static_cast<float>((steady(kLate_s).inverse() * p).z());
   }
   // Stamps tell a part of it.
-  const FrameTiming timing{steady_velocity(), steady_velocity(), 0.015, {0, kLate_s - 0.015}};
+  const FeatureTiming timing{steady_velocity(), steady_velocity(), 0.015, {0, kLate_s - 0.015}};
   const Features undone = at_pose_time(seen.features, test_world().camera(), timing);
   double before = 0, after = 0;
   for (std::size_t i = 0; i < undone.size(); ++i) {

@@ -47,8 +47,8 @@ Vector6d TimeCorrection::step(const CameraTimes& times) const {
   return by_times * vector_of(times) + without_times;
 }
 
-TimeCorrection time_correction(const FrameTiming& frame,
-                               const FrameTiming& reference,
+TimeCorrection time_correction(const FeatureTiming& frame,
+                               const FeatureTiming& reference,
                                const Eigen::Isometry3d& T_frame_reference) {
   const PoseByTimes of_reference = step_in_frame(T_frame_reference) * reference.pose_by_times;
   return {

@@ -3,13 +3,13 @@
 
 #include <span>
 
-#include "stillmap/slam/features/frame_timing.hpp"
+#include "stillmap/slam/features/feature_timing.hpp"
 #include "stillmap/slam/optim/pose_optimizer.hpp"
 
 namespace stillmap {
 
 /// How an optimal pose follows the times that its features are corrected for (at_pose_time()), to
-/// first order: FrameTiming::pose_by_times. `row`: row_position() of the feature of each
+/// first order: FeatureTiming::pose_by_times. `row`: row_position() of the feature of each
 /// observation; `information`: pose_information() of the same pose and observations.
 [[nodiscard]] PoseByTimes pose_by_times(const CameraModel& camera,
                                         const Eigen::Isometry3d& T_camera_world,
@@ -30,8 +30,8 @@ struct TimeCorrection {
 /// The correction of T_frame_reference, the pose of a frame relative to its reference key frame, to
 /// first order. The landmarks that the frame was measured against are taken for those of the
 /// reference: where both moved alike they are wrong alike, and the relative pose is right.
-[[nodiscard]] TimeCorrection time_correction(const FrameTiming& frame,
-                                             const FrameTiming& reference,
+[[nodiscard]] TimeCorrection time_correction(const FeatureTiming& frame,
+                                             const FeatureTiming& reference,
                                              const Eigen::Isometry3d& T_frame_reference);
 
 }  // namespace stillmap

@@ -48,7 +48,7 @@ class Seen {
     }
   }
 
-  [[nodiscard]] FrameTiming timing(const CameraTimes& assumed) const {
+  [[nodiscard]] FeatureTiming timing(const CameraTimes& assumed) const {
     const CameraVelocity velocity = velocity_at(time_s_);
     return {velocity, velocity, 0, assumed, PoseByTimes::Zero()};
   }
@@ -71,7 +71,7 @@ class Seen {
   }
 
   /// The pose against landmarks, and how it follows the times.
-  [[nodiscard]] std::pair<Eigen::Isometry3d, FrameTiming> track(
+  [[nodiscard]] std::pair<Eigen::Isometry3d, FeatureTiming> track(
       const std::unordered_map<std::uint32_t, Eigen::Vector3d>& landmarks,
       const CameraTimes& assumed) const {
     const Features features = corrected(assumed);
@@ -88,7 +88,7 @@ class Seen {
     }
     const Eigen::Isometry3d T =
         optimize_pose(test_world().camera(), swing(time_s_).inverse(), observations).T_camera_world;
-    FrameTiming result = timing(assumed);
+    FeatureTiming result = timing(assumed);
     result.pose_by_times = pose_by_times(test_world().camera(),
                                          T,
                                          observations,
@@ -140,7 +140,7 @@ TEST(TimeCorrection, MendsPosesMeasuredUnderWrongTimes) {
   const CameraTimes assumed;
   const Seen reference(0.0);
   const auto landmarks = reference.landmarks(assumed);
-  const FrameTiming of_reference = reference.track(landmarks, assumed).second;
+  const FeatureTiming of_reference = reference.track(landmarks, assumed).second;
   for (const double time_s : {0.4, 0.6}) {
     const auto [T_frame_world, timing] = Seen(time_s).track(landmarks, assumed);
     const Eigen::Isometry3d T_true = swing(time_s).inverse() * swing(0.0);
@@ -157,7 +157,7 @@ TEST(TimeCorrection, MendsPosesMeasuredUnderWrongTimes) {
 
 TEST(TimeCorrection, IsNothingWhereTheTimesAreThoseAssumedOrMotionIsAlike) {
   const Seen seen(0.1);
-  const FrameTiming timing = seen.track(true_landmarks(), kTrue).second;
+  const FeatureTiming timing = seen.track(true_landmarks(), kTrue).second;
   const Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   EXPECT_LT(time_correction(timing, {}, T).step(kTrue).norm(), 1e-12);
   EXPECT_GT(time_correction(timing, {}, T).step({}).norm(), 1e-4);

@@ -27,7 +27,7 @@ Linearized linearize(const TimedBundle& bundle, std::size_t i) {
   const BundleObservation& o = bundle.problem.observations[i];
   const CameraModel& camera = bundle.problem.camera;
   const Eigen::Isometry3d& T = bundle.problem.T_camera_world[o.camera];
-  const FrameTiming& timing = bundle.timing[o.camera];
+  const FeatureTiming& timing = bundle.timing[o.camera];
   const Eigen::Vector3d p = T * bundle.problem.points[o.point];
   const Eigen::Matrix3d J = reprojection_jacobian(camera, o.measurement, p);
   Linearized result{pose_jacobian(J, p), J * T.linear(), Columns::Zero()};

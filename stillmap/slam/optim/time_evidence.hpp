@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "stillmap/slam/features/frame_timing.hpp"
+#include "stillmap/slam/features/feature_timing.hpp"
 #include "stillmap/slam/optim/bundle_adjuster.hpp"
 
 namespace stillmap {
@@ -17,9 +17,9 @@ struct TimeEvidence {
 
 /// A solved bundle and the timing of each of its cameras.
 struct TimedBundle {
-  BundleProblem problem;            ///< its observations of free cameras are inliers
-  std::vector<FrameTiming> timing;  ///< per camera
-  std::vector<double> row;          ///< per observation: row_position() of its feature
+  BundleProblem problem;              ///< its observations of free cameras are inliers
+  std::vector<FeatureTiming> timing;  ///< per camera
+  std::vector<double> row;            ///< per observation: row_position() of its feature
 };
 
 /// The evidence of the free cameras' observations: held cameras and their observations take no

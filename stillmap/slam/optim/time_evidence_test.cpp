@@ -45,7 +45,7 @@ struct Recording {
   std::vector<Eigen::Isometry3d> T_camera_world;
   std::vector<Features> features;
   std::vector<std::vector<std::uint32_t>> points;
-  std::vector<FrameTiming> timing;
+  std::vector<FeatureTiming> timing;
 };
 
 Recording record(const SimulatedWorld& world,
@@ -83,7 +83,7 @@ TimedBundle bundle_of(const Recording& recording, const CameraTimes& times) {
   problem.T_camera_world = recording.T_camera_world;
   problem.held.assign(recording.features.size(), 0);
   bundle.timing = recording.timing;
-  for (FrameTiming& timing : bundle.timing) timing.assumed = times;
+  for (FeatureTiming& timing : bundle.timing) timing.assumed = times;
   std::vector<Features> corrected;
   std::map<std::uint32_t, std::vector<std::pair<std::uint32_t, std::uint32_t>>> seen;
   for (std::uint32_t c = 0; c < recording.features.size(); ++c) {

@@ -8,8 +8,8 @@
 #include "stillmap/core/ids.hpp"
 #include "stillmap/core/status.hpp"
 #include "stillmap/geometry/se3.hpp"
+#include "stillmap/slam/features/feature_timing.hpp"
 #include "stillmap/slam/features/features.hpp"
-#include "stillmap/slam/features/frame_timing.hpp"
 
 namespace stillmap {
 
@@ -23,7 +23,7 @@ struct TrackedFrame {
   Matrix6d information = Matrix6d::Zero();
   KeyframeId reference;  ///< the key frame that shares most landmarks with the frame
   FeaturesPtr features;
-  FrameTiming timing;                 ///< of `features`
+  FeatureTiming timing;               ///< of `features`
   std::vector<LandmarkId> landmarks;  ///< per feature: inliers of the pose; invalid for others
   int inliers = 0;
   std::vector<LandmarkId> expected;  ///< landmarks that should be visible

@@ -22,7 +22,7 @@ struct CameraTimes {
 using PoseByTimes = Eigen::Matrix<double, 6, 2>;
 
 /// What brings the features of a frame to one time, that of its pose.
-struct FrameTiming {
+struct FeatureTiming {
   CameraVelocity velocity;         ///< that the features are corrected for; zero where unknown
   CameraVelocity smooth_velocity;  ///< by the frames around, later; `velocity` until then
   double depth_stamp_s = 0;        ///< of the depth image, after that of the colour image
