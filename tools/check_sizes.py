@@ -109,7 +109,8 @@ def check_file(path, name):
 
 
 NAMESPACE = re.compile(r"^namespace ([\w:]+) \{", re.MULTILINE)
-TYPE = re.compile(r"^(?:struct|class|union|enum class) (\w+)(?: final)?(?: : [^;{]*)?\s*\{", re.MULTILINE)
+TYPE = re.compile(r"^(?:(?:struct|class|union|enum class) (?P<type>\w+)(?: final)?(?: : [^;{]*)?\s*\{|using (?P<alias>\w+) =)",
+                  re.MULTILINE)
 
 
 def check_types(texts):
@@ -120,9 +121,10 @@ def check_types(texts):
         spaces = [(match.start(), match.group(1)) for match in NAMESPACE.finditer(code)]
         for match in TYPE.finditer(code):
             space = next((space for at, space in reversed(spaces) if at < match.start()), "")
-            before = first.setdefault((space, match.group(1)), name)
+            type_name = match["type"] or match["alias"]
+            before = first.setdefault((space, type_name), name)
             if before != name:
-                yield f"{name}: {space}::{match.group(1)} is another type in {before}: one of them needs another name"
+                yield f"{name}: {space}::{type_name} is another type in {before}: one of them needs another name"
 
 
 def tracked_files(root):

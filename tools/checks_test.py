@@ -99,6 +99,9 @@ class Types(unittest.TestCase):
         other = mesh.replace("struct", "class").replace("Mesh {", "Mesh final : Base {")
         self.assertEqual(list(check_sizes.check_types({"x.hpp": mesh, "y.hpp": other})),
                          ["y.hpp: a::Mesh is another type in x.hpp: one of them needs another name"])
+        alias = "namespace a {\nusing Mesh = int;\n}\n"
+        self.assertEqual(list(check_sizes.check_types({"x.hpp": mesh, "y.hpp": alias})),
+                         ["y.hpp: a::Mesh is another type in x.hpp: one of them needs another name"])
         for text in (other.replace("a {", "b {"), "namespace a {\nstruct Mesh;\n}\n", mesh.replace("Mesh", "Net"),
                      "namespace a {\n// struct Mesh {\n}\n"):
             self.assertEqual(list(check_sizes.check_types({"x.hpp": mesh, "y.hpp": text})), [])

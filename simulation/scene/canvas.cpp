@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kShift = 4;  // positions are drawn with 1/16 of a texel
 
-cv::Scalar scalar(const Rgb& c) {
+cv::Scalar scalar(const Paint& c) {
   return {double(c[0]), double(c[1]), double(c[2])};
 }
 
@@ -39,17 +39,17 @@ cv::Mat1b value_noise(cv::Size size, cv::Size cell, std::uint64_t seed) {
 
 }  // namespace
 
-Rgb blend(const Rgb& a, const Rgb& b, double share_of_b) {
-  Rgb mixed;
+Paint blend(const Paint& a, const Paint& b, double share_of_b) {
+  Paint mixed;
   for (int i = 0; i < 3; ++i) {
     mixed[i] = cv::saturate_cast<std::uint8_t>((1.0 - share_of_b) * a[i] + share_of_b * b[i]);
   }
   return mixed;
 }
 
-Rgb near_color(const Rgb& color, int spread, HashStream& rng) {
+Paint near_color(const Paint& color, int spread, HashStream& rng) {
   const int brightness = rng.below(2 * spread + 1) - spread;
-  Rgb near;
+  Paint near;
   for (int i = 0; i < 3; ++i) {
     const int own = rng.below(spread + 1) - spread / 2;
     near[i] = cv::saturate_cast<std::uint8_t>(color[i] + brightness + own);
@@ -57,7 +57,7 @@ Rgb near_color(const Rgb& color, int spread, HashStream& rng) {
   return near;
 }
 
-Rgb pick(const std::vector<Rgb>& colors, HashStream& rng) {
+Paint pick(const std::vector<Paint>& colors, HashStream& rng) {
   return colors[static_cast<std::size_t>(rng.below(static_cast<int>(colors.size())))];
 }
 
@@ -70,7 +70,7 @@ std::string random_words(int count, HashStream& rng) {
   return words;
 }
 
-Canvas::Canvas(cv::Size2d size_m, double texel_m, const Rgb& color)
+Canvas::Canvas(cv::Size2d size_m, double texel_m, const Paint& color)
     : size_m_(size_m), texel_m_(texel_m) {
   STILLMAP_CHECK(size_m.width > 0 && size_m.height > 0 && texel_m > 0);
   picture_ = cv::Mat3b(texels(size_m.height), texels(size_m.width), color);
@@ -94,42 +94,42 @@ cv::Rect Canvas::texel_rect(const cv::Rect2d& area) const {
   return rect & cv::Rect(0, 0, picture_.cols, picture_.rows);
 }
 
-void Canvas::fill(const cv::Rect2d& area, const Rgb& color) {
+void Canvas::fill(const cv::Rect2d& area, const Paint& color) {
   const cv::Rect rect = texel_rect(area);
   if (!rect.empty()) picture_(rect).setTo(scalar(color));
 }
 
-void Canvas::outline(const cv::Rect2d& area, double width_m, const Rgb& color) {
+void Canvas::outline(const cv::Rect2d& area, double width_m, const Paint& color) {
   fill({area.x, area.y, area.width, width_m}, color);
   fill({area.x, area.y + area.height - width_m, area.width, width_m}, color);
   fill({area.x, area.y, width_m, area.height}, color);
   fill({area.x + area.width - width_m, area.y, width_m, area.height}, color);
 }
 
-void Canvas::line(cv::Point2d from, cv::Point2d to, double width_m, const Rgb& color) {
+void Canvas::line(cv::Point2d from, cv::Point2d to, double width_m, const Paint& color) {
   cv::line(
       picture_, shifted(from), shifted(to), scalar(color), texels(width_m), cv::LINE_AA, kShift);
 }
 
-void Canvas::curve(const std::vector<cv::Point2d>& points, double width_m, const Rgb& color) {
+void Canvas::curve(const std::vector<cv::Point2d>& points, double width_m, const Paint& color) {
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
     line(points[i], points[i + 1], width_m, color);
   }
 }
 
-void Canvas::polygon(const std::vector<cv::Point2d>& corners, const Rgb& color) {
+void Canvas::polygon(const std::vector<cv::Point2d>& corners, const Paint& color) {
   std::vector<cv::Point> places;
   for (const cv::Point2d& corner : corners) places.push_back(shifted(corner));
   cv::fillPoly(
       picture_, std::vector<std::vector<cv::Point>>{places}, scalar(color), cv::LINE_AA, kShift);
 }
 
-void Canvas::disc(cv::Point2d center, double radius_m, const Rgb& color) {
+void Canvas::disc(cv::Point2d center, double radius_m, const Paint& color) {
   const int radius = static_cast<int>(std::lround(radius_m / texel_m_ * (1 << kShift)));
   cv::circle(picture_, shifted(center), radius, scalar(color), cv::FILLED, cv::LINE_AA, kShift);
 }
 
-void Canvas::text(const std::string& words, const cv::Rect2d& area, const Rgb& ink) {
+void Canvas::text(const std::string& words, const cv::Rect2d& area, const Paint& ink) {
   constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
   constexpr double kCapHeight = 22.0;  // of this font at scale 1
   const cv::Size unit = cv::getTextSize(words, kFont, 1.0, 1, nullptr);
@@ -141,14 +141,14 @@ void Canvas::text(const std::string& words, const cv::Rect2d& area, const Rgb& i
   cv::putText(picture_, words, origin, kFont, scale, scalar(ink), thickness, cv::LINE_AA);
 }
 
-void Canvas::small_print(const cv::Rect2d& area, double line_m, const Rgb& ink, HashStream& rng) {
+void Canvas::small_print(const cv::Rect2d& area, double line_m, const Paint& ink, HashStream& rng) {
   for (double y = area.y; y + line_m <= area.y + area.height; y += line_m) {
     const bool last = rng.below(6) == 0;  // of a paragraph
     const double end = area.x + area.width * (last ? rng.uniform(0.3, 0.7) : rng.uniform(0.9, 1.0));
     double x = area.x;
     while (x < end) {
       const double word = std::min(line_m * rng.uniform(0.6, 3.0), end - x);
-      const Rgb tone = blend(ink, picture_(picture_.rows / 2, 0), rng.uniform(0.0, 0.3));
+      const Paint tone = blend(ink, picture_(picture_.rows / 2, 0), rng.uniform(0.0, 0.3));
       fill({x, y + 0.2 * line_m, word, 0.5 * line_m}, tone);
       x += word + 0.5 * line_m;
     }
@@ -169,7 +169,7 @@ void Canvas::noise(cv::Size2d cell_m, double contrast, HashStream& rng) {
   }
   for (int y = 0; y < sum.rows; ++y) {
     for (int x = 0; x < sum.cols; ++x) {
-      Rgb& c = picture_(y, x);
+      Paint& c = picture_(y, x);
       for (int i = 0; i < 3; ++i) c[i] = cv::saturate_cast<std::uint8_t>(c[i] + sum(y, x));
     }
   }

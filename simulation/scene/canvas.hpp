@@ -11,16 +11,17 @@
 
 namespace stillmap {
 
-using Rgb = cv::Vec3b;
+/// Red, green and blue.
+using Paint = cv::Vec3b;
 
 /// A colour between two.
-[[nodiscard]] Rgb blend(const Rgb& a, const Rgb& b, double share_of_b);
+[[nodiscard]] Paint blend(const Paint& a, const Paint& b, double share_of_b);
 
 /// A colour near another: each of its brightness and channels differs by at most `spread`.
-[[nodiscard]] Rgb near_color(const Rgb& color, int spread, HashStream& rng);
+[[nodiscard]] Paint near_color(const Paint& color, int spread, HashStream& rng);
 
 /// One of a few colours.
-[[nodiscard]] Rgb pick(const std::vector<Rgb>& colors, HashStream& rng);
+[[nodiscard]] Paint pick(const std::vector<Paint>& colors, HashStream& rng);
 
 /// Words of office life, separated by spaces.
 [[nodiscard]] std::string random_words(int count, HashStream& rng);
@@ -28,23 +29,23 @@ using Rgb = cv::Vec3b;
 /// A picture that is drawn on in metres, from its top left corner: x right, y down.
 class Canvas {
  public:
-  Canvas(cv::Size2d size_m, double texel_m, const Rgb& color);
+  Canvas(cv::Size2d size_m, double texel_m, const Paint& color);
 
   [[nodiscard]] const cv::Mat3b& picture() const { return picture_; }
   [[nodiscard]] cv::Rect2d bounds() const { return {{0, 0}, size_m_}; }
 
-  void fill(const cv::Rect2d& area, const Rgb& color);
-  void outline(const cv::Rect2d& area, double width_m, const Rgb& color);
-  void line(cv::Point2d from, cv::Point2d to, double width_m, const Rgb& color);
-  void curve(const std::vector<cv::Point2d>& points, double width_m, const Rgb& color);
-  void polygon(const std::vector<cv::Point2d>& corners, const Rgb& color);
-  void disc(cv::Point2d center, double radius_m, const Rgb& color);
+  void fill(const cv::Rect2d& area, const Paint& color);
+  void outline(const cv::Rect2d& area, double width_m, const Paint& color);
+  void line(cv::Point2d from, cv::Point2d to, double width_m, const Paint& color);
+  void curve(const std::vector<cv::Point2d>& points, double width_m, const Paint& color);
+  void polygon(const std::vector<cv::Point2d>& corners, const Paint& color);
+  void disc(cv::Point2d center, double radius_m, const Paint& color);
 
   /// One line of letters in the height of `area`, reduced if it is too long.
-  void text(const std::string& words, const cv::Rect2d& area, const Rgb& ink);
+  void text(const std::string& words, const cv::Rect2d& area, const Paint& ink);
 
   /// Print too small to read: lines of word-like dashes.
-  void small_print(const cv::Rect2d& area, double line_m, const Rgb& ink, HashStream& rng);
+  void small_print(const cv::Rect2d& area, double line_m, const Paint& ink, HashStream& rng);
 
   /// Adds noise of several octaves, each half as coarse as the one before, of `contrast` grey
   /// values.

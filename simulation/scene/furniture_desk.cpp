@@ -19,14 +19,14 @@ BoxSurfaces with(const Surface& all, std::size_t face, const Surface& other) {
   return surfaces;
 }
 
-const std::vector<Rgb> kCovers{{46, 74, 110},
-                               {142, 56, 48},
-                               {62, 100, 82},
-                               {196, 168, 110},
-                               {88, 82, 104},
-                               {216, 212, 200},
-                               {60, 62, 68},
-                               {186, 116, 66}};
+const std::vector<Paint> kCovers{{46, 74, 110},
+                                 {142, 56, 48},
+                                 {62, 100, 82},
+                                 {196, 168, 110},
+                                 {88, 82, 104},
+                                 {216, 212, 200},
+                                 {60, 62, 68},
+                                 {186, 116, 66}};
 
 // A drawer unit with its fronts towards -x.
 Mesh make_drawers(Painter& painter) {
@@ -50,7 +50,7 @@ Mesh make_drawers(Painter& painter) {
 }  // namespace
 
 Mesh make_desk(Painter& painter) {
-  const Rgb tone(190, 158, 116);
+  const Paint tone(190, 158, 116);
   const Surface edge = painter.plain({172, 140, 100}), metal = painter.plain({126, 129, 134});
   BoxSurfaces panel = all_faces(edge);
   for (const std::size_t face : {kPlusX, kMinusX}) {
@@ -143,7 +143,7 @@ Mesh make_phone(Painter& painter) {
 
 Mesh make_mug(Painter& painter) {
   HashStream rng(painter.next_seed());
-  const Rgb tone = pick({{238, 236, 230}, {226, 222, 208}, {206, 214, 218}}, rng);
+  const Paint tone = pick({{238, 236, 230}, {226, 222, 208}, {206, 214, 218}}, rng);
   const Surface glaze = painter.plain(tone), tea = painter.plain({84, 56, 34});
   const Surface print = painter.picture(mug_picture({0.26, 0.09}, tone, painter.next_seed()));
   Mesh mesh = make_lathe({{0, 0, glaze},
@@ -191,7 +191,7 @@ Mesh make_pen_holder(Painter& painter) {
                           {0.035, 0.06, dark},
                           {0, 0.06, dark}},
                          20);
-  const std::vector<Rgb> tones{
+  const std::vector<Paint> tones{
       {200, 60, 50}, {50, 90, 160}, {226, 190, 80}, {40, 40, 44}, {70, 140, 90}};
   for (std::size_t i = 0; i < tones.size(); ++i) {
     const double angle = 1.3 * static_cast<double>(i) + 0.4;
@@ -246,7 +246,7 @@ Mesh make_book_stack(Painter& painter, int books) {
   HashStream rng(painter.next_seed());
   double z = 0;
   for (int i = 0; i < books; ++i) {
-    const Rgb tone = near_color(pick(kCovers, rng), 16, rng);
+    const Paint tone = near_color(pick(kCovers, rng), 16, rng);
     const Surface plain = painter.plain(tone);
     const double height = 0.25 - 0.012 * i, width = 0.18 - 0.008 * ((3 * i) % 4);
     const double thick = 0.018 + 0.008 * ((5 * i) % 4);

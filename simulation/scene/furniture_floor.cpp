@@ -11,20 +11,20 @@ namespace {
 
 using Eigen::Vector3d;
 
-const std::vector<Rgb> kSpines{{44, 70, 104},
-                               {130, 48, 44},
-                               {58, 92, 74},
-                               {190, 164, 112},
-                               {86, 76, 100},
-                               {218, 214, 204},
-                               {48, 50, 56},
-                               {176, 108, 62},
-                               {112, 134, 150},
-                               {150, 142, 128}};
+const std::vector<Paint> kSpines{{44, 70, 104},
+                                 {130, 48, 44},
+                                 {58, 92, 74},
+                                 {190, 164, 112},
+                                 {86, 76, 100},
+                                 {218, 214, 204},
+                                 {48, 50, 56},
+                                 {176, 108, 62},
+                                 {112, 134, 150},
+                                 {150, 142, 128}};
 
 // One standing book, its spine towards -y; x from 0 to its thickness.
 Mesh make_standing_book(Painter& painter, const Vector3d& size, HashStream& tones) {
-  const Rgb tone = near_color(pick(kSpines, tones), 16, tones);
+  const Paint tone = near_color(pick(kSpines, tones), 16, tones);
   const Surface cover = painter.plain(tone), pages = painter.plain({226, 220, 202});
   const Surface spine =
       painter.picture(book_spine_picture({size.x(), size.z()}, tone, painter.next_seed()));
@@ -82,7 +82,7 @@ Mesh make_jacket(const Surface& cloth) {
 }  // namespace
 
 Mesh make_shelf(Painter& painter, const ShelfSize& size) {
-  const Rgb tone(196, 164, 122);
+  const Paint tone(196, 164, 122);
   const Surface side =
       painter.picture(wood_picture({size.depth, size.height}, tone, painter.next_seed()));
   const Surface back = painter.plain({170, 140, 104}), edge = painter.plain({206, 178, 140});
@@ -128,7 +128,7 @@ Mesh make_binder_row(Painter& painter, int binders) {
   HashStream tones(painter.next_seed());
   Mesh mesh;
   for (int i = 0; i < binders; ++i) {
-    const Rgb tone =
+    const Paint tone =
         pick({{52, 54, 60}, {60, 80, 120}, {120, 50, 48}, {70, 100, 84}, {180, 180, 176}}, tones);
     const double thick = i % 3 == 1 ? 0.05 : 0.075;
     const Surface plain = painter.plain(tone);
@@ -294,7 +294,7 @@ Mesh make_globe(Painter& painter, double radius) {
 Mesh make_coat_stand(Painter& painter) {
   const Surface wood = painter.plain({112, 80, 54});
   HashStream rng(painter.next_seed());
-  const Rgb tone = pick({{62, 70, 88}, {96, 64, 56}, {70, 84, 70}}, rng);
+  const Paint tone = pick({{62, 70, 88}, {96, 64, 56}, {70, 84, 70}}, rng);
   const Surface cloth =
       painter.repeated(fabric_picture({0.12, 0.12}, tone, painter.next_seed()), 0.12);
   Mesh mesh = make_lathe(

@@ -7,7 +7,7 @@ namespace stillmap {
 namespace {
 
 void draw_house(Canvas& canvas, const cv::Rect2d& front, HashStream& rng) {
-  const Rgb wall = pick({{196, 180, 158}, {176, 120, 98}, {205, 200, 190}, {150, 152, 158}}, rng);
+  const Paint wall = pick({{196, 180, 158}, {176, 120, 98}, {205, 200, 190}, {150, 152, 158}}, rng);
   canvas.fill(front, wall);
   const double roof = 0.25 * front.width;
   canvas.polygon({{front.x - 0.02, front.y},
@@ -18,7 +18,7 @@ void draw_house(Canvas& canvas, const cv::Rect2d& front, HashStream& rng) {
   for (double y = front.y + 0.03; y + 0.07 < front.y + front.height; y += 0.1) {
     for (double x = front.x + 0.02; x + 0.04 < front.x + front.width; x += pitch) {
       canvas.fill({x, y, 0.035, 0.055}, {235, 235, 230});
-      canvas.fill({x + 0.005, y + 0.005, 0.025, 0.045}, near_color(Rgb(80, 96, 112), 20, rng));
+      canvas.fill({x + 0.005, y + 0.005, 0.025, 0.045}, near_color(Paint(80, 96, 112), 20, rng));
     }
   }
 }
@@ -41,7 +41,7 @@ cv::Mat3b plaster_picture(cv::Size2d size_m, PictureSeed seed) {
 
 cv::Mat3b carpet_picture(cv::Size2d size_m, PictureSeed seed) {
   HashStream rng(seed);
-  const Rgb tone(104, 109, 116), light(130, 136, 144), dark(80, 85, 96);
+  const Paint tone(104, 109, 116), light(130, 136, 144), dark(80, 85, 96);
   Canvas canvas(size_m, 0.006, tone);
   constexpr double kTile = 0.5;
   for (double y = 0; y < size_m.height; y += kTile) {
@@ -64,7 +64,7 @@ cv::Mat3b carpet_picture(cv::Size2d size_m, PictureSeed seed) {
   const int crumbs = static_cast<int>(4 * size_m.area());
   for (int i = 0; i < crumbs; ++i) {
     const cv::Point2d at(rng.uniform(0, size_m.width), rng.uniform(0, size_m.height));
-    canvas.disc(at, rng.uniform(0.004, 0.012), near_color(Rgb(140, 142, 145), 40, rng));
+    canvas.disc(at, rng.uniform(0.004, 0.012), near_color(Paint(140, 142, 145), 40, rng));
   }
   return canvas.picture();
 }
@@ -90,7 +90,7 @@ cv::Mat3b lamp_panel_picture(cv::Size2d size_m, PictureSeed seed) {
   HashStream rng(seed);
   Canvas canvas(size_m, 0.01, {255, 253, 246});
   for (double x = 0; x < size_m.width; x += 0.1) {
-    canvas.fill({x, 0, 0.012, size_m.height}, near_color(Rgb(236, 236, 230), 4, rng));
+    canvas.fill({x, 0, 0.012, size_m.height}, near_color(Paint(236, 236, 230), 4, rng));
   }
   canvas.outline(canvas.bounds(), 0.012, {222, 222, 220});
   return canvas.picture();
@@ -114,7 +114,7 @@ cv::Mat3b outdoor_picture(cv::Size2d size_m, PictureSeed seed) {
     for (int leaf = 0; leaf < 14; ++leaf) {
       const cv::Point2d at(foot.x + rng.uniform(-0.4, 0.4) * height,
                            foot.y - height * rng.uniform(0.5, 1.3));
-      canvas.disc(at, rng.uniform(0.06, 0.2) * height, near_color(Rgb(74, 104, 58), 18, rng));
+      canvas.disc(at, rng.uniform(0.06, 0.2) * height, near_color(Paint(74, 104, 58), 18, rng));
     }
   }
   const double street = 0.87 * size_m.height;
@@ -156,7 +156,7 @@ cv::Mat3b socket_picture(cv::Size2d size_m, PictureSeed seed) {
   for (int i = 0; i < places; ++i) {
     const cv::Point2d center((i + 0.5) * pitch, 0.5 * side);
     canvas.disc(center, 0.34 * side, {206, 206, 202});
-    canvas.disc(center, 0.3 * side, near_color(Rgb(226, 226, 222), 5, rng));
+    canvas.disc(center, 0.3 * side, near_color(Paint(226, 226, 222), 5, rng));
     canvas.disc({center.x - 0.12 * side, center.y}, 0.05 * side, {60, 60, 60});
     canvas.disc({center.x + 0.12 * side, center.y}, 0.05 * side, {60, 60, 60});
   }

@@ -13,16 +13,16 @@ namespace {
 // A window of a desktop: a bar with a title, below it lines of code, or text beside a picture.
 void draw_window(Canvas& canvas, const cv::Rect2d& area, HashStream& rng) {
   const bool dark = rng.below(2) == 0;
-  const Rgb ground = dark ? Rgb(36, 40, 48) : Rgb(244, 245, 246);
+  const Paint ground = dark ? Paint(36, 40, 48) : Paint(244, 245, 246);
   canvas.fill(area, ground);
-  canvas.fill({area.x, area.y, area.width, 0.014}, dark ? Rgb(66, 72, 84) : Rgb(200, 206, 214));
+  canvas.fill({area.x, area.y, area.width, 0.014}, dark ? Paint(66, 72, 84) : Paint(200, 206, 214));
   canvas.text(random_words(2, rng),
               {area.x + 0.006, area.y + 0.001, 0.1, 0.012},
-              dark ? Rgb(220, 220, 220) : Rgb(50, 50, 50));
+              dark ? Paint(220, 220, 220) : Paint(50, 50, 50));
   canvas.disc({area.x + area.width - 0.008, area.y + 0.007}, 0.004, {208, 84, 76});
-  const std::vector<Rgb> inks =
-      dark ? std::vector<Rgb>{{214, 214, 210}, {130, 190, 236}, {170, 210, 130}, {232, 170, 110}}
-           : std::vector<Rgb>{{44, 44, 48}, {44, 44, 48}, {60, 90, 160}, {150, 60, 60}};
+  const std::vector<Paint> inks =
+      dark ? std::vector<Paint>{{214, 214, 210}, {130, 190, 236}, {170, 210, 130}, {232, 170, 110}}
+           : std::vector<Paint>{{44, 44, 48}, {44, 44, 48}, {60, 90, 160}, {150, 60, 60}};
   double indent = 0;
   for (double y = area.y + 0.019; y + 0.008 < area.y + area.height; y += 0.0095) {
     if (rng.below(7) == 0) {
@@ -49,7 +49,7 @@ void draw_chart_window(Canvas& canvas, const cv::Rect2d& area, HashStream& rng) 
     canvas.line({inside.x, y}, {inside.x + inside.width, y}, 0.001, {205, 205, 205});
   }
   for (int series = 0; series < 3; ++series) {
-    const Rgb ink = pick({{200, 70, 60}, {60, 110, 190}, {70, 150, 90}, {210, 150, 50}}, rng);
+    const Paint ink = pick({{200, 70, 60}, {60, 110, 190}, {70, 150, 90}, {210, 150, 50}}, rng);
     std::vector<cv::Point2d> curve;
     double height = rng.uniform(0.2, 0.8);
     for (int i = 0; i <= 24; ++i) {
@@ -62,15 +62,15 @@ void draw_chart_window(Canvas& canvas, const cv::Rect2d& area, HashStream& rng) 
 }
 
 // A wavy border between bands, along a spine or a cover.
-void draw_title(Canvas& canvas, const cv::Rect2d& area, const Rgb& ink, HashStream& rng) {
+void draw_title(Canvas& canvas, const cv::Rect2d& area, const Paint& ink, HashStream& rng) {
   canvas.text(random_words(1, rng), {area.x, area.y, area.width, 0.5 * area.height}, ink);
   canvas.text(random_words(1, rng),
               {area.x, area.y + 0.5 * area.height, area.width, 0.5 * area.height},
               ink);
 }
 
-Rgb ink_on(const Rgb& ground) {
-  return ground[0] + ground[1] + ground[2] > 380 ? Rgb(40, 40, 46) : Rgb(236, 230, 214);
+Paint ink_on(const Paint& ground) {
+  return ground[0] + ground[1] + ground[2] > 380 ? Paint(40, 40, 46) : Paint(236, 230, 214);
 }
 
 }  // namespace
@@ -100,8 +100,8 @@ cv::Mat3b fabric_picture(cv::Size2d size_m, const cv::Vec3b& tone, PictureSeed s
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) {
       const bool over = (row + column) % 2 == 0;
-      const Rgb thread =
-          near_color(blend(tone, over ? Rgb(230, 230, 230) : Rgb(0, 0, 0), 0.14), 14, rng);
+      const Paint thread =
+          near_color(blend(tone, over ? Paint(230, 230, 230) : Paint(0, 0, 0), 0.14), 14, rng);
       canvas.fill({0.006 * column, 0.006 * row, 0.006, over ? 0.004 : 0.006}, thread);
     }
   }
@@ -114,7 +114,7 @@ cv::Mat3b screen_picture(cv::Size2d size_m, PictureSeed seed) {
   Canvas canvas(size_m, 0.0016, pick({{52, 84, 110}, {66, 92, 84}, {88, 78, 104}}, rng));
   canvas.noise({0.2, 0.2}, 24.0, rng);
   for (int i = 0; i < 4; ++i) {  // icons
-    canvas.fill({0.012, 0.02 + 0.045 * i, 0.022, 0.022}, near_color(Rgb(190, 170, 120), 50, rng));
+    canvas.fill({0.012, 0.02 + 0.045 * i, 0.022, 0.022}, near_color(Paint(190, 170, 120), 50, rng));
   }
   draw_window(
       canvas, {w * rng.uniform(0.08, 0.14), h * rng.uniform(0.05, 0.1), 0.48 * w, 0.78 * h}, rng);
@@ -125,7 +125,7 @@ cv::Mat3b screen_picture(cv::Size2d size_m, PictureSeed seed) {
   canvas.fill({0, 0.94 * h, w, 0.06 * h}, {34, 38, 46});
   for (int i = 0; i < 6; ++i) {
     canvas.fill({0.01 + 0.028 * i, 0.95 * h, 0.016, 0.04 * h},
-                near_color(Rgb(130, 150, 170), 60, rng));
+                near_color(Paint(130, 150, 170), 60, rng));
   }
   return canvas.picture();
 }
@@ -134,9 +134,9 @@ cv::Mat3b keyboard_picture(cv::Size2d size_m, PictureSeed seed) {
   HashStream rng(seed);
   const double w = size_m.width, h = size_m.height;
   const bool dark = rng.below(2) == 0;
-  Canvas canvas(size_m, 0.0015, dark ? Rgb(40, 41, 44) : Rgb(150, 152, 154));
-  const Rgb key = dark ? Rgb(66, 67, 71) : Rgb(222, 222, 218),
-            ink = dark ? Rgb(226, 226, 226) : Rgb(50, 50, 54);
+  Canvas canvas(size_m, 0.0015, dark ? Paint(40, 41, 44) : Paint(150, 152, 154));
+  const Paint key = dark ? Paint(66, 67, 71) : Paint(222, 222, 218),
+              ink = dark ? Paint(226, 226, 226) : Paint(50, 50, 54);
   constexpr int kRows = 6;
   const double pitch = h / (kRows + 0.4), unit = w / 22.5;
   for (int row = 0; row < kRows; ++row) {
@@ -196,14 +196,14 @@ cv::Mat3b book_cover_picture(cv::Size2d size_m, const cv::Vec3b& tone, PictureSe
   HashStream rng(seed);
   const double w = size_m.width, h = size_m.height;
   Canvas canvas(size_m, 0.0025, tone);
-  const Rgb ink = ink_on(tone);
-  const Rgb second = near_color(blend(tone, ink, 0.35), 30, rng);
+  const Paint ink = ink_on(tone);
+  const Paint second = near_color(blend(tone, ink, 0.35), 30, rng);
   canvas.fill({0, rng.uniform(0.3, 0.6) * h, w, rng.uniform(0.1, 0.35) * h}, second);
   const cv::Point2d center(0.5 * w, rng.uniform(0.5, 0.7) * h);
   for (int i = 0; i < 7; ++i) {
     const cv::Point2d at(center.x + w * rng.uniform(-0.3, 0.3),
                          center.y + h * rng.uniform(-0.15, 0.15));
-    const Rgb third = near_color(blend(second, {200, 150, 90}, 0.6), 40, rng);
+    const Paint third = near_color(blend(second, {200, 150, 90}, 0.6), 40, rng);
     if (rng.below(2) == 0) {
       canvas.disc(at, rng.uniform(0.03, 0.12) * w, third);
     } else {
@@ -220,13 +220,13 @@ cv::Mat3b book_spine_picture(cv::Size2d size_m, const cv::Vec3b& tone, PictureSe
   // Drawn lying, as the title runs, then turned upright.
   const double w = size_m.height, h = size_m.width;
   Canvas canvas({w, h}, 0.002, tone);
-  const Rgb ink = ink_on(tone), second = near_color(blend(tone, ink, 0.5), 40, rng);
+  const Paint ink = ink_on(tone), second = near_color(blend(tone, ink, 0.5), 40, rng);
   if (rng.below(2) == 0) canvas.fill({0.04 * w, 0, 0.03 * w, h}, second);
   if (rng.below(2) == 0) canvas.fill({0.9 * w, 0, 0.04 * w, h}, second);
   if (rng.below(3) == 0) canvas.fill({0.12 * w, 0.08 * h, 0.6 * w, 0.84 * h}, second);
   canvas.text(random_words(2, rng),
               {0.15 * w, 0.2 * h, 0.5 * w, 0.6 * h},
-              rng.below(3) == 0 ? Rgb(228, 196, 110) : ink);
+              rng.below(3) == 0 ? Paint(228, 196, 110) : ink);
   if (rng.below(2) == 0) canvas.disc({0.82 * w, 0.5 * h}, 0.25 * h, ink);
   cv::Mat3b upright(canvas.picture().cols, canvas.picture().rows);
   for (int y = 0; y < upright.rows; ++y) {
@@ -266,7 +266,7 @@ cv::Mat3b mug_picture(cv::Size2d size_m, const cv::Vec3b& tone, PictureSeed seed
   HashStream rng(seed);
   const double w = size_m.width, h = size_m.height;
   Canvas canvas(size_m, 0.0015, tone);
-  const Rgb ink = pick({{170, 60, 50}, {46, 80, 130}, {60, 110, 80}, {40, 40, 44}}, rng);
+  const Paint ink = pick({{170, 60, 50}, {46, 80, 130}, {60, 110, 80}, {40, 40, 44}}, rng);
   for (int side = 0; side < 3; ++side) {
     const double x = w * (0.05 + 0.33 * side);
     const int kind = rng.below(3);
@@ -289,7 +289,7 @@ cv::Mat3b mug_picture(cv::Size2d size_m, const cv::Vec3b& tone, PictureSeed seed
 cv::Mat3b carton_side_picture(cv::Size2d size_m, PictureSeed seed) {
   HashStream rng(seed);
   const double w = size_m.width, h = size_m.height;
-  const Rgb ink(92, 66, 44);
+  const Paint ink(92, 66, 44);
   Canvas canvas(size_m, 0.0025, {184, 146, 104});
   canvas.noise({0.006, 0.3}, 14.0, rng);
   canvas.fill({0.5 * w - 0.025, 0, 0.05, rng.uniform(0.15, 0.3) * h}, {206, 184, 146});  // tape

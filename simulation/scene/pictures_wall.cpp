@@ -9,9 +9,9 @@
 namespace stillmap {
 namespace {
 
-const std::vector<Rgb> kPens{{36, 66, 140}, {40, 40, 44}, {176, 46, 44}, {36, 116, 70}};
-const std::vector<Rgb> kNotes{{240, 220, 110}, {238, 170, 176}, {160, 212, 160}, {150, 196, 226}};
-const std::vector<Rgb> kInks{{44, 84, 140}, {176, 74, 50}, {70, 130, 92}, {150, 110, 40}};
+const std::vector<Paint> kPens{{36, 66, 140}, {40, 40, 44}, {176, 46, 44}, {36, 116, 70}};
+const std::vector<Paint> kNotes{{240, 220, 110}, {238, 170, 176}, {160, 212, 160}, {150, 196, 226}};
+const std::vector<Paint> kInks{{44, 84, 140}, {176, 74, 50}, {70, 130, 92}, {150, 110, 40}};
 
 // A blob with a ragged coast: a continent, a lake.
 std::vector<cv::Point2d> ragged_blob(cv::Point2d center, cv::Size2d radius, HashStream& rng) {
@@ -41,7 +41,7 @@ void draw_plot(Canvas& canvas, const cv::Rect2d& area, HashStream& rng) {
   const bool bars = rng.below(2) == 0;
   const int series = bars ? 1 : 3;
   for (int s = 0; s < series; ++s) {
-    const Rgb color = pick(kInks, rng);
+    const Paint color = pick(kInks, rng);
     std::vector<cv::Point2d> curve;
     double height = rng.uniform(0.1, 0.9);
     for (int i = 0; i <= 12; ++i) {
@@ -58,7 +58,7 @@ void draw_plot(Canvas& canvas, const cv::Rect2d& area, HashStream& rng) {
 
 // A small photograph: sky, mountains behind one another, water or a field.
 void draw_landscape(Canvas& canvas, const cv::Rect2d& area, HashStream& rng) {
-  const Rgb sky = pick({{176, 204, 228}, {232, 190, 150}, {150, 176, 206}}, rng);
+  const Paint sky = pick({{176, 204, 228}, {232, 190, 150}, {150, 176, 206}}, rng);
   for (int i = 0; i < 12; ++i) {
     const double top = area.height * i / 12.0;
     canvas.fill({area.x, area.y + top, area.width, area.height - top},
@@ -83,12 +83,12 @@ void draw_landscape(Canvas& canvas, const cv::Rect2d& area, HashStream& rng) {
     const double foot = area.y + area.height * rng.uniform(0.88, 0.99);
     const double height = area.height * rng.uniform(0.06, 0.16);
     canvas.polygon({{x - 0.25 * height, foot}, {x, foot - height}, {x + 0.25 * height, foot}},
-                   near_color(Rgb(38, 60, 40), 14, rng));
+                   near_color(Paint(38, 60, 40), 14, rng));
   }
 }
 
 // Handwriting: a wavy line, in words.
-void scribble(Canvas& canvas, const cv::Rect2d& line, const Rgb& ink, HashStream& rng) {
+void scribble(Canvas& canvas, const cv::Rect2d& line, const Paint& ink, HashStream& rng) {
   const double step = 0.16 * line.height;
   std::vector<cv::Point2d> stroke;
   for (double x = line.x; x < line.x + line.width; x += step) {
@@ -112,7 +112,7 @@ cv::Mat3b world_map_picture(cv::Size2d size_m, PictureSeed seed) {
   for (int i = 1; i < 12; ++i)
     canvas.line({w * i / 12, 0}, {w * i / 12, h}, 0.002, {150, 180, 200});
   for (int i = 1; i < 6; ++i) canvas.line({0, h * i / 6}, {w, h * i / 6}, 0.002, {150, 180, 200});
-  const std::vector<Rgb> lands{
+  const std::vector<Paint> lands{
       {214, 196, 140}, {176, 190, 136}, {222, 178, 140}, {200, 170, 170}, {226, 214, 170}};
   const std::vector<cv::Rect2d> continents{{0.22, 0.32, 0.15, 0.22},
                                            {0.31, 0.70, 0.08, 0.24},
@@ -152,14 +152,14 @@ cv::Mat3b landscape_picture(cv::Size2d size_m, PictureSeed seed) {
 
 cv::Mat3b abstract_picture(cv::Size2d size_m, PictureSeed seed) {
   HashStream rng(seed);
-  const std::vector<Rgb> tones{
+  const std::vector<Paint> tones{
       {188, 92, 66}, {52, 76, 96}, {214, 178, 108}, {96, 128, 122}, {232, 222, 204}, {60, 56, 58}};
   Canvas canvas(size_m, 0.003, {236, 228, 212});
   for (int i = 0; i < 13; ++i) {
     const cv::Point2d at(rng.uniform(0.1, 0.9) * size_m.width,
                          rng.uniform(0.1, 0.9) * size_m.height);
     const double side = rng.uniform(0.05, 0.25) * size_m.width;
-    const Rgb tone = pick(tones, rng);
+    const Paint tone = pick(tones, rng);
     const int kind = rng.below(4);
     if (kind == 0) canvas.disc(at, side, tone);
     if (kind == 1)
@@ -178,7 +178,7 @@ cv::Mat3b science_poster_picture(cv::Size2d size_m, PictureSeed seed) {
   HashStream rng(seed);
   const double w = size_m.width, h = size_m.height;
   Canvas canvas(size_m, 0.0025, {246, 246, 243});
-  const Rgb theme = pick({{44, 72, 118}, {116, 44, 52}, {40, 92, 84}, {84, 60, 112}}, rng);
+  const Paint theme = pick({{44, 72, 118}, {116, 44, 52}, {40, 92, 84}, {84, 60, 112}}, rng);
   canvas.fill({0, 0, w, 0.14 * h}, theme);
   canvas.text(random_words(3, rng), {0.05 * w, 0.025 * h, 0.9 * w, 0.06 * h}, {245, 245, 240});
   canvas.text(random_words(5, rng), {0.05 * w, 0.09 * h, 0.7 * w, 0.03 * h}, {214, 218, 226});
@@ -219,7 +219,7 @@ cv::Mat3b calendar_picture(cv::Size2d size_m, PictureSeed seed) {
         (0.05 + 0.13 * (cell % 7)) * w, (0.57 + 0.07 * (cell / 7)) * h, 0.09 * w, 0.05 * h);
     if (rng.below(9) == 0)
       canvas.disc({place.x + 0.03 * w, place.y + 0.025 * h}, 0.04 * w, {238, 190, 90});
-    canvas.text(std::to_string(day), place, cell % 7 > 4 ? Rgb(180, 50, 50) : Rgb(50, 50, 54));
+    canvas.text(std::to_string(day), place, cell % 7 > 4 ? Paint(180, 50, 50) : Paint(50, 50, 54));
   }
   return canvas.picture();
 }
@@ -295,7 +295,7 @@ cv::Mat3b pinboard_picture(cv::Size2d size_m, PictureSeed seed) {
                            side * rng.uniform(0.7, 1.3));
     canvas.fill({sheet.x + 0.006, sheet.y + 0.006, sheet.width, sheet.height}, {130, 100, 70});
     const bool note = side < 0.11;
-    canvas.fill(sheet, note ? pick(kNotes, rng) : Rgb(246, 245, 240));
+    canvas.fill(sheet, note ? pick(kNotes, rng) : Paint(246, 245, 240));
     const cv::Rect2d inside(
         sheet.x + 0.012, sheet.y + 0.02, sheet.width - 0.024, sheet.height - 0.03);
     const int kind = rng.below(3);
