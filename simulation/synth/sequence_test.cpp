@@ -330,7 +330,8 @@ TEST(SyntheticSequence, RowsOfARollingShutterAreThoseOfTheirTimes) {
   const SyntheticSequence rolling(options), fast(fast_options());
   const FramePtr seen = rolling.frame(FrameId(30));
   // The first row is read at 0.95 s, the middle one at 1 s, that at three quarters at 1.025 s.
-  for (const auto& [row, frame] : {std::pair{0, 38}, {120, 40}, {180, 41}}) {
+  for (const std::pair<int, int>& row_and_frame : {std::pair{0, 38}, {120, 40}, {180, 41}}) {
+    const int row = row_and_frame.first, frame = row_and_frame.second;
     const FramePtr then = fast.frame(FrameId(static_cast<std::uint32_t>(frame)));
     const FramePtr other = fast.frame(FrameId(static_cast<std::uint32_t>(frame + 2)));
     EXPECT_GT(share_of_equal_depth(seen->depth.mat.row(row), then->depth.mat.row(row)), 0.98);

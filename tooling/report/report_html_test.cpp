@@ -54,7 +54,7 @@ RunReport full_report(const PointCloud& map) {
   report.frames_total = 62;
   report.frames_tracked = 60;
   report.skipped.push_back({FrameId(10), {101.05, "101.05"}, "rgb/a.png: too short"});
-  report.lost.emplace_back(101.06, "101.06");
+  report.lost.push_back({101.06, "101.06"});
   report.estimate = half_circle(60);
   report.keyframes = half_circle(10);
   report.groundtruth = half_circle(60);
@@ -62,8 +62,8 @@ RunReport full_report(const PointCloud& map) {
   report.rpe = relative_pose_error(*report.groundtruth, report.estimate);
   report.wall_s = 3;
   report.frame_ms.assign(61, 20.0);
-  report.stages.emplace_back("track", std::vector<double>(61, 12.0));
-  report.stages.emplace_back("map", std::vector<double>(10, 31.0));
+  report.stages.push_back({"track", std::vector<double>(61, 12.0)});
+  report.stages.push_back({"map", std::vector<double>(10, 31.0)});
   report.tracked_features.assign(61, 300);
   report.peak_memory_mb = 250;
   RgbdFrame frame;

@@ -23,12 +23,12 @@ RunReport small_report(const PointCloud& map) {
   report.frames_total = 8;
   report.frames_tracked = 6;
   report.skipped.push_back({FrameId(1), {1.5, "1.500000"}, "rgb/b.png: truncated"});
-  report.lost.emplace_back(2.0, "2.000");
+  report.lost.push_back({2.0, "2.000"});
   report.keyframes.resize(3);
   report.wall_s = 4.5;
   report.frame_ms = {10, 20, 30, 100};
-  report.stages.emplace_back("match", std::vector<double>{1, 2, 3, 10});
-  report.stages.emplace_back("extract", std::vector<double>{5});
+  report.stages.push_back({"match", std::vector<double>{1, 2, 3, 10}});
+  report.stages.push_back({"extract", std::vector<double>{5}});
   report.peak_memory_mb = 321.5;
   report.map = &map;
   report.warnings = {"depth is sparse"};
@@ -95,8 +95,8 @@ TEST(ReportJson, Times) {
 
 TEST(ReportJson, StagesOfOneNameAreTakenTogether) {
   RunReport report;
-  report.stages.emplace_back("match", std::vector<double>{1});
-  report.stages.emplace_back("match", std::vector<double>{3});
+  report.stages.push_back({"match", std::vector<double>{1}});
+  report.stages.push_back({"match", std::vector<double>{3}});
   const json stages = json::parse(report_json(report)).at("time").at("stages_ms");
   EXPECT_EQ(stages, (json{{"match", {{"mean", 2}, {"median", 2}, {"p95", 3}, {"max", 3}}}}));
 }
