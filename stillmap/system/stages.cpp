@@ -24,6 +24,15 @@ void move_to_world(std::vector<ObjectState>& objects, const Eigen::Isometry3d& T
   }
 }
 
+// The features that are more likely to stand than to move.
+Features trusted_features(const Features& features, const CameraModel& camera) {
+  std::vector<std::uint8_t> keep(features.size(), 0);
+  for (std::size_t i = 0; i < keep.size(); ++i) {
+    keep[i] = features.trust_of(i) >= kTrustOfLandmarks ? 1 : 0;
+  }
+  return select_features(features, keep, camera);
+}
+
 // Removes new features that are more likely to move than not: they must not become landmarks.
 TrackedFrame without_doubted_newcomers(TrackedFrame tracked, const CameraModel& camera) {
   const Features& features = *tracked.features;
@@ -109,12 +118,22 @@ bool System::Stages::needs_own_objects() const {
   return back_end.map().keyframes().empty() || long_lost;
 }
 
-bool System::Stages::may_begin_submap(const Features& features) const {
+int System::Stages::count_with_depth(const Features& features) const {
   int with_depth = 0;
   for (std::size_t i = 0; i < features.size(); ++i) {
     with_depth += measure.has_depth(features, i) ? 1 : 0;
   }
-  return with_depth >= config.tracking.tracker.min_inliers;
+  return with_depth;
+}
+
+FeaturesPtr System::Stages::features_to_begin(FeaturesPtr own, const MoreFeatures& more) const {
+  const TrackerConfig& needs = config.tracking.tracker;
+  if (count_with_depth(*own) >= needs.enough_inliers) return own;
+  std::optional<Features> all = more(*own);
+  if (!all) return own;
+  Features trusted = trusted_features(*all, camera);
+  const bool suffice = count_with_depth(trusted) >= needs.min_inliers;
+  return std::make_shared<const Features>(suffice ? std::move(trusted) : *std::move(all));
 }
 
 std::optional<Features> System::Stages::with_doubted(const PreparedFrame& prepared,
@@ -141,13 +160,10 @@ TrackedFrame System::Stages::track(const PreparedFrame& prepared,
   TrackedFrame tracked =
       tracker.track(frame, std::move(features), back_end.map(), back_end.places(), more);
   if (!has_pose(tracked) && origin == MaskOrigin::kOwn && needs_own_objects()) {
-    FeaturesPtr begun = tracked.features;
-    if (!may_begin_submap(*begun)) {
-      if (std::optional<Features> all = more(*begun)) {
-        begun = std::make_shared<const Features>(*std::move(all));
-      }
+    const FeaturesPtr begun = features_to_begin(tracked.features, more);
+    if (count_with_depth(*begun) >= config.tracking.tracker.min_inliers) {
+      return tracker.start(frame, begun);
     }
-    if (may_begin_submap(*begun)) return tracker.start(frame, begun);
   }
   if (!localize_only) back_end.count_landmarks(tracked);
   return tracked;

@@ -80,7 +80,10 @@ struct System::Stages {
   int lost_frames = 0;  // in a row
 
  private:
-  [[nodiscard]] bool may_begin_submap(const Features& features) const;  // decides by their number
+  [[nodiscard]] int count_with_depth(const Features& features) const;
+  /// `own`, or also doubted ones where these are few: rather standing ones, all where even these do
+  /// not suffice.
+  [[nodiscard]] FeaturesPtr features_to_begin(FeaturesPtr own, const MoreFeatures& more) const;
   [[nodiscard]] std::optional<Features> with_doubted(const PreparedFrame& prepared,
                                                      const Features& features,
                                                      const FrameDynamics& judged) const;
