@@ -34,6 +34,7 @@ set(stillmap_lone_tests
   ^ReadPly[.]ReadsTheSharedMaps$ ^ReadTrajectory[.]ReadsThePublishedFiles$ ^DetectionsFolder[.]ReadsThoseOfARealNetwork$
   ^OnnxNetworks[.] ^FetchedNetworks[.] ^FurniturePackage[.] ^ShowRun[.] ^ServerForPages[.] ^OpenNiDevice[.] OnADevice$
   ^Export[.].*ReadBy ^Export[.].*ReadAs ^ExportMesh[.]MeshesAreReadBy ADiskIsFull$ AFullDiskIsAnError$
+  ^SaveRecording[.]DevicesAreNamedOrRefused$
   ^Surroundings[.]AnotherUserReadsWhatNobodyMayWrite$ ^Surroundings[.]LanguagesMakeNoDifference$)
 
 # Tests that make no sense under sanitizers, as expressions for CTest's names: with STILLMAP_SANITIZE CTest lists them as
@@ -45,7 +46,7 @@ set(stillmap_unsanitized_tests
   _browser$)                              # they measure how soon a page shows what happens
 
 # Tests whose leaks tools/lsan.supp can only tell by whole stacks, which cost time: expressions for SUITE.TEST.
-set(stillmap_whole_stack_tests ^OpenNiDevice[.] OnADevice$)
+set(stillmap_whole_stack_tests ^OpenNiDevice[.] OnADevice$ ^SaveRecording[.]DevicesAreNamedOrRefused$)
 
 # A sanitized program needs some ten times as long.
 set(stillmap_test_timeout_s 600)

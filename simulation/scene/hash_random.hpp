@@ -31,7 +31,8 @@ namespace stillmap {
   return static_cast<float>(mix_bits(key) >> 40U) * 0x1p-24F;
 }
 
-/// A small stream of random numbers for building scenes; equal on every standard library.
+/// A small stream of random numbers for building scenes; equal on every standard library. Two draws
+/// never stand in the arguments of one call, whose order is the compiler's.
 class HashStream {
  public:
   explicit constexpr HashStream(std::uint64_t seed) : state_(mix_bits(seed)) {}

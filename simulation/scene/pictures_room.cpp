@@ -32,7 +32,8 @@ cv::Mat3b plaster_picture(cv::Size2d size_m, PictureSeed seed) {
   canvas.noise({0.04, 0.04}, 7.0, rng);
   const int marks = static_cast<int>(size_m.area());
   for (int i = 0; i < marks; ++i) {  // scuffs and filled holes
-    const cv::Point2d at(rng.uniform(0, size_m.width), rng.uniform(0.3, 1.0) * size_m.height);
+    const double y = rng.uniform(0.3, 1.0) * size_m.height, x = rng.uniform(0, size_m.width);
+    const cv::Point2d at(x, y);
     const double length = rng.uniform(0.01, 0.12);
     canvas.line(at, {at.x + length, at.y + rng.uniform(-0.03, 0.03)}, 0.008, {203, 199, 189});
   }
@@ -47,15 +48,16 @@ cv::Mat3b carpet_picture(cv::Size2d size_m, PictureSeed seed) {
   for (double y = 0; y < size_m.height; y += kTile) {
     for (double x = 0; x < size_m.width; x += kTile) {
       const cv::Rect2d tile(x, y, kTile, kTile);
-      canvas.fill(tile, blend(tone, rng.below(2) == 0 ? light : dark, rng.uniform(0, 0.3)));
+      const double share = rng.uniform(0, 0.3);
+      canvas.fill(tile, blend(tone, rng.below(2) == 0 ? light : dark, share));
       const bool across = rng.below(2) == 0;
       for (int i = 0; i < 26; ++i) {  // stripes of the pile
         const double at = rng.uniform(0, kTile - 0.02), from = rng.uniform(0, 0.3);
         const double length = rng.uniform(0.08, kTile - from);
         const cv::Rect2d stripe = across ? cv::Rect2d(x + from, y + at, length, 0.012)
                                          : cv::Rect2d(x + at, y + from, 0.012, length);
-        canvas.fill(stripe & tile,
-                    blend(tone, rng.below(2) == 0 ? light : dark, rng.uniform(0.1, 0.6)));
+        const double strength = rng.uniform(0.1, 0.6);
+        canvas.fill(stripe & tile, blend(tone, rng.below(2) == 0 ? light : dark, strength));
       }
       canvas.outline(tile, 0.006, blend(tone, {60, 64, 72}, 0.5));
     }
@@ -63,8 +65,9 @@ cv::Mat3b carpet_picture(cv::Size2d size_m, PictureSeed seed) {
   canvas.noise({0.05, 0.05}, 20.0, rng);
   const int crumbs = static_cast<int>(4 * size_m.area());
   for (int i = 0; i < crumbs; ++i) {
-    const cv::Point2d at(rng.uniform(0, size_m.width), rng.uniform(0, size_m.height));
-    canvas.disc(at, rng.uniform(0.004, 0.012), near_color(Paint(140, 142, 145), 40, rng));
+    const double y = rng.uniform(0, size_m.height), x = rng.uniform(0, size_m.width);
+    const Paint crumb = near_color(Paint(140, 142, 145), 40, rng);
+    canvas.disc({x, y}, rng.uniform(0.004, 0.012), crumb);
   }
   return canvas.picture();
 }
@@ -75,8 +78,8 @@ cv::Mat3b ceiling_picture(cv::Size2d size_m, PictureSeed seed) {
   constexpr double kPanel = 0.6;
   const int holes = static_cast<int>(60 * size_m.area());
   for (int i = 0; i < holes; ++i) {
-    const cv::Point2d at(rng.uniform(0, size_m.width), rng.uniform(0, size_m.height));
-    canvas.fill({at.x, at.y, rng.uniform(0.01, 0.03), 0.012}, {206, 206, 202});
+    const double y = rng.uniform(0, size_m.height), x = rng.uniform(0, size_m.width);
+    canvas.fill({x, y, rng.uniform(0.01, 0.03), 0.012}, {206, 206, 202});
   }
   for (double at = 0; at < size_m.width; at += kPanel) {
     canvas.fill({at, 0, 0.024, size_m.height}, {190, 190, 188});
@@ -108,13 +111,15 @@ cv::Mat3b outdoor_picture(cv::Size2d size_m, PictureSeed seed) {
     x += width + rng.uniform(0.02, 0.12);
   }
   for (int tree = 0; tree < 9; ++tree) {
-    const cv::Point2d foot(rng.uniform(0, size_m.width), horizon + rng.uniform(0.05, 0.14));
+    const double ground = horizon + rng.uniform(0.05, 0.14);
+    const cv::Point2d foot(rng.uniform(0, size_m.width), ground);
     const double height = rng.uniform(0.1, 0.3);
     canvas.line(foot, {foot.x, foot.y - height}, 0.015, {84, 66, 50});
     for (int leaf = 0; leaf < 14; ++leaf) {
-      const cv::Point2d at(foot.x + rng.uniform(-0.4, 0.4) * height,
-                           foot.y - height * rng.uniform(0.5, 1.3));
-      canvas.disc(at, rng.uniform(0.06, 0.2) * height, near_color(Paint(74, 104, 58), 18, rng));
+      const double y = foot.y - height * rng.uniform(0.5, 1.3);
+      const double x = foot.x + rng.uniform(-0.4, 0.4) * height;
+      const Paint green = near_color(Paint(74, 104, 58), 18, rng);
+      canvas.disc({x, y}, rng.uniform(0.06, 0.2) * height, green);
     }
   }
   const double street = 0.87 * size_m.height;

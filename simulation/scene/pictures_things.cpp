@@ -83,7 +83,8 @@ cv::Mat3b wood_picture(cv::Size2d size_m, const cv::Vec3b& tone, PictureSeed see
   canvas.noise(wide ? cv::Size2d(0.2, 0.006) : cv::Size2d(0.006, 0.2), 26.0, rng);
   const int streaks = static_cast<int>(70 * size_m.area());
   for (int i = 0; i < streaks; ++i) {
-    const cv::Point2d at(rng.uniform(0, size_m.width), rng.uniform(0, size_m.height));
+    const double y = rng.uniform(0, size_m.height), x = rng.uniform(0, size_m.width);
+    const cv::Point2d at(x, y);
     const double length = rng.uniform(0.03, 0.25);
     const cv::Point2d end =
         wide ? cv::Point2d(at.x + length, at.y) : cv::Point2d(at.x, at.y + length);
@@ -201,8 +202,8 @@ cv::Mat3b book_cover_picture(cv::Size2d size_m, const cv::Vec3b& tone, PictureSe
   canvas.fill({0, rng.uniform(0.3, 0.6) * h, w, rng.uniform(0.1, 0.35) * h}, second);
   const cv::Point2d center(0.5 * w, rng.uniform(0.5, 0.7) * h);
   for (int i = 0; i < 7; ++i) {
-    const cv::Point2d at(center.x + w * rng.uniform(-0.3, 0.3),
-                         center.y + h * rng.uniform(-0.15, 0.15));
+    const double y = center.y + h * rng.uniform(-0.15, 0.15);
+    const cv::Point2d at(center.x + w * rng.uniform(-0.3, 0.3), y);
     const Paint third = near_color(blend(second, {200, 150, 90}, 0.6), 40, rng);
     if (rng.below(2) == 0) {
       canvas.disc(at, rng.uniform(0.03, 0.12) * w, third);
@@ -224,9 +225,8 @@ cv::Mat3b book_spine_picture(cv::Size2d size_m, const cv::Vec3b& tone, PictureSe
   if (rng.below(2) == 0) canvas.fill({0.04 * w, 0, 0.03 * w, h}, second);
   if (rng.below(2) == 0) canvas.fill({0.9 * w, 0, 0.04 * w, h}, second);
   if (rng.below(3) == 0) canvas.fill({0.12 * w, 0.08 * h, 0.6 * w, 0.84 * h}, second);
-  canvas.text(random_words(2, rng),
-              {0.15 * w, 0.2 * h, 0.5 * w, 0.6 * h},
-              rng.below(3) == 0 ? Paint(228, 196, 110) : ink);
+  const Paint letters = rng.below(3) == 0 ? Paint(228, 196, 110) : ink;
+  canvas.text(random_words(2, rng), {0.15 * w, 0.2 * h, 0.5 * w, 0.6 * h}, letters);
   if (rng.below(2) == 0) canvas.disc({0.82 * w, 0.5 * h}, 0.25 * h, ink);
   cv::Mat3b upright(canvas.picture().cols, canvas.picture().rows);
   for (int y = 0; y < upright.rows; ++y) {
@@ -273,9 +273,9 @@ cv::Mat3b mug_picture(cv::Size2d size_m, const cv::Vec3b& tone, PictureSeed seed
     if (kind == 0) canvas.text(random_words(1, rng), {x, 0.35 * h, 0.26 * w, 0.3 * h}, ink);
     if (kind == 1) {
       for (int i = 0; i < 5; ++i) {
-        canvas.disc({x + 0.06 * w * i, h * rng.uniform(0.3, 0.7)},
-                    rng.uniform(0.06, 0.16) * h,
-                    near_color(ink, 30, rng));
+        const Paint blob = near_color(ink, 30, rng);
+        const double radius = rng.uniform(0.06, 0.16) * h;
+        canvas.disc({x + 0.06 * w * i, h * rng.uniform(0.3, 0.7)}, radius, blob);
       }
     }
     if (kind == 2) {

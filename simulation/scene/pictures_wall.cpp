@@ -124,12 +124,13 @@ cv::Mat3b world_map_picture(cv::Size2d size_m, PictureSeed seed) {
                                            {0.5, 0.97, 0.44, 0.05}};
   for (const cv::Rect2d& c : continents) {
     const cv::Point2d center(c.x * w, c.y * h);
-    canvas.polygon(ragged_blob(center, {1.2 * c.width * w, 1.15 * c.height * h}, rng),
-                   pick(lands, rng));
+    const Paint land = pick(lands, rng);
+    canvas.polygon(ragged_blob(center, {1.2 * c.width * w, 1.15 * c.height * h}, rng), land);
     for (int country = 0; country < 8; ++country) {
-      const cv::Point2d at(center.x + c.width * w * rng.uniform(-0.5, 0.5),
-                           center.y + c.height * h * rng.uniform(-0.5, 0.5));
-      canvas.polygon(ragged_blob(at, {0.04 * w, 0.05 * h}, rng), pick(lands, rng));
+      const double y = center.y + c.height * h * rng.uniform(-0.5, 0.5);
+      const cv::Point2d at(center.x + c.width * w * rng.uniform(-0.5, 0.5), y);
+      const Paint tone = pick(lands, rng);
+      canvas.polygon(ragged_blob(at, {0.04 * w, 0.05 * h}, rng), tone);
       canvas.disc(at, 0.004, {60, 60, 60});
       canvas.text(random_words(1, rng), {at.x + 0.01, at.y - 0.01, 0.06, 0.016}, {70, 62, 56});
     }
@@ -156,8 +157,8 @@ cv::Mat3b abstract_picture(cv::Size2d size_m, PictureSeed seed) {
       {188, 92, 66}, {52, 76, 96}, {214, 178, 108}, {96, 128, 122}, {232, 222, 204}, {60, 56, 58}};
   Canvas canvas(size_m, 0.003, {236, 228, 212});
   for (int i = 0; i < 13; ++i) {
-    const cv::Point2d at(rng.uniform(0.1, 0.9) * size_m.width,
-                         rng.uniform(0.1, 0.9) * size_m.height);
+    const double y = rng.uniform(0.1, 0.9) * size_m.height;
+    const cv::Point2d at(rng.uniform(0.1, 0.9) * size_m.width, y);
     const double side = rng.uniform(0.05, 0.25) * size_m.width;
     const Paint tone = pick(tones, rng);
     const int kind = rng.below(4);
@@ -252,9 +253,10 @@ cv::Mat3b whiteboard_picture(cv::Size2d size_m, PictureSeed seed) {
   Canvas canvas(size_m, 0.003, {240, 242, 242});
   canvas.noise({0.5, 0.2}, 6.0, rng);
   for (int row = 0; row < 6; ++row) {
+    const Paint pen = pick(kPens, rng);
     scribble(canvas,
              {0.05 * w, (0.06 + 0.075 * row) * h, w * rng.uniform(0.2, 0.42), 0.05 * h},
-             pick(kPens, rng),
+             pen,
              rng);
   }
   std::vector<cv::Point2d> boxes;
@@ -273,7 +275,8 @@ cv::Mat3b whiteboard_picture(cv::Size2d size_m, PictureSeed seed) {
   }
   draw_plot(canvas, {0.06 * w, 0.56 * h, 0.34 * w, 0.36 * h}, rng);
   for (int i = 0; i < 7; ++i) {
-    const cv::Rect2d note(w * rng.uniform(0.45, 0.9), h * rng.uniform(0.62, 0.84), 0.076, 0.076);
+    const double y = h * rng.uniform(0.62, 0.84);
+    const cv::Rect2d note(w * rng.uniform(0.45, 0.9), y, 0.076, 0.076);
     canvas.fill(note, near_color(pick(kNotes, rng), 8, rng));
     for (int row = 0; row < 3; ++row) {
       scribble(canvas, {note.x + 0.008, note.y + 0.01 + 0.02 * row, 0.055, 0.016}, kPens[1], rng);
@@ -289,10 +292,9 @@ cv::Mat3b pinboard_picture(cv::Size2d size_m, PictureSeed seed) {
   const int sheets = static_cast<int>(14 * size_m.area());
   for (int i = 0; i < sheets; ++i) {
     const double side = rng.uniform(0.08, 0.22);
-    const cv::Rect2d sheet(rng.uniform(0.02, size_m.width - side - 0.02),
-                           rng.uniform(0.02, size_m.height - 1.3 * side),
-                           side,
-                           side * rng.uniform(0.7, 1.3));
+    const double height = side * rng.uniform(0.7, 1.3);
+    const double y = rng.uniform(0.02, size_m.height - 1.3 * side);
+    const cv::Rect2d sheet(rng.uniform(0.02, size_m.width - side - 0.02), y, side, height);
     canvas.fill({sheet.x + 0.006, sheet.y + 0.006, sheet.width, sheet.height}, {130, 100, 70});
     const bool note = side < 0.11;
     canvas.fill(sheet, note ? pick(kNotes, rng) : Paint(246, 245, 240));
@@ -300,8 +302,8 @@ cv::Mat3b pinboard_picture(cv::Size2d size_m, PictureSeed seed) {
         sheet.x + 0.012, sheet.y + 0.02, sheet.width - 0.024, sheet.height - 0.03);
     const int kind = rng.below(3);
     if (note || kind == 0) {
-      canvas.text(
-          random_words(1, rng), {inside.x, inside.y, inside.width, 0.022}, pick(kPens, rng));
+      const Paint pen = pick(kPens, rng);
+      canvas.text(random_words(1, rng), {inside.x, inside.y, inside.width, 0.022}, pen);
       canvas.small_print({inside.x, inside.y + 0.03, inside.width, inside.height - 0.03},
                          0.012,
                          {80, 80, 84},

@@ -178,10 +178,10 @@ std::vector<DetectionFaults::Report> DetectionFaults::false_reports(const FrameT
   if (!happens(key, options_.false_rate)) return {};
   const cv::Size image = truth.mask.mat.size();
   HashStream random(key);
-  const cv::Size size(static_cast<int>(image.width * random.uniform(0.04, 0.1)),
-                      static_cast<int>(image.height * random.uniform(0.08, 0.2)));
-  const cv::Point corner(random.below(image.width - size.width),
-                         random.below(image.height - size.height));
+  const int height = static_cast<int>(image.height * random.uniform(0.08, 0.2));
+  const cv::Size size(static_cast<int>(image.width * random.uniform(0.04, 0.1)), height);
+  const int top = random.below(image.height - size.height);
+  const cv::Point corner(random.below(image.width - size.width), top);
   Report report;
   report.room = cv::Rect(corner, size);
   report.mask = cv::Mat1b(size, std::uint8_t{0});
