@@ -159,8 +159,11 @@ void PlaceIndex::remove(KeyframeId keyframe) {
   const Keys keys = keys_of(places_[slot].descriptors);
   for (std::size_t k = 0; k < keys.keys.size(); ++k) {
     if (keys.distinctive[k] == 0) continue;
-    std::erase_if(buckets_[bucket(k % static_cast<std::size_t>(options_.keys), keys.keys[k])],
-                  [&](const Entry& entry) { return entry.slot == slot; });
+    std::vector<Entry>& entries =
+        buckets_[bucket(k % static_cast<std::size_t>(options_.keys), keys.keys[k])];
+    std::erase_if(entries, [&](const Entry& entry) { return entry.slot == slot; });
+    // Else every key that was ever seen would hold memory.
+    if (entries.empty()) entries.shrink_to_fit();
   }
   places_[slot] = {};
   free_slots_.push_back(slot);
