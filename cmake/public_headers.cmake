@@ -10,9 +10,7 @@ set(stillmap_public_headers
   stillmap/core/status.hpp
   stillmap/core/trajectory.hpp
   stillmap/geometry/camera.hpp
-  stillmap/geometry/depth_camera.hpp
   stillmap/perception/detections/detections.hpp
-  stillmap/perception/motion/match_judge.hpp
   stillmap/perception/objects/frame_objects.hpp
   stillmap/perception/objects/object_finder.hpp
   stillmap/perception/objects/object_state.hpp
@@ -24,3 +22,7 @@ set(stillmap_public_headers
   stillmap/system/results.hpp
   stillmap/system/settings.hpp
   stillmap/system/system.hpp)
+list(LENGTH stillmap_public_headers count)
+if(count GREATER 20)
+  message(FATAL_ERROR "cmake/public_headers.cmake: ${count} headers are installed; at most 20, so that one can read them all")
+endif()

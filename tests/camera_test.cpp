@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cameras as a user brings them: files of other programs, wide lenses, a depth camera of its own,
 // depth of an unknown unit.
+#include "stillmap/geometry/camera.hpp"
+
 #include <memory>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "stillmap/geometry/depth_camera.hpp"
 #include "stillmap/io/ply.hpp"
 #include "stillmap/sensor/camera_io.hpp"
 #include "tests/support/cli_fixture.hpp"

@@ -25,6 +25,15 @@ enum class FeatureVerdict : std::uint8_t {
   kDoubted,        ///< on a dynamic object: used where the others are too few
 };
 
+/// What the matches of a frame are judged by.
+enum class MatchJudge : std::uint8_t {
+  kNotAsked,     ///< there are none to be judged
+  kNothing,      ///< the motion of the camera is not known
+  kFundamental,  ///< a fundamental matrix from matches
+  kRotation,     ///< the rotation of a camera that only rotates, and depth
+  kPrediction,   ///< the predicted motion: the matches were too few, or contradict each other
+};
+
 /// The wall-clock time of one stage's work on a frame.
 struct StageTime {
   std::string_view stage;  ///< refers to a literal

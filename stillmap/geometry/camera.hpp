@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <opencv2/core/mat.hpp>
 
 namespace stillmap {
@@ -89,6 +89,15 @@ struct CameraModel {
   [[nodiscard]] bool has_ray(const Eigen::Vector2d& ideal_px) const {
     return unproject(ideal_px, 1.0).head<2>().norm() < 0.5 * kSteepest;
   }
+};
+
+/// The camera that takes the depth images, where these are not registered to the color images.
+struct DepthCamera {
+  /// Size and lens of the depth images. Its name, depth factor and readout mean nothing: those of
+  /// the color camera hold.
+  CameraModel camera;
+  /// From the depth camera's coordinates to the color camera's, metres.
+  Eigen::Isometry3d T_color_depth = Eigen::Isometry3d::Identity();
 };
 
 /// The built-in camera `name`: tum_fr1, tum_fr2, tum_fr3 or bonn. Throws Error, with a hint at the

@@ -16,7 +16,7 @@
 
 #include "stillmap/core/error.hpp"
 #include "stillmap/core/nearest_name.hpp"
-#include "stillmap/geometry/depth_camera.hpp"
+#include "stillmap/geometry/camera.hpp"
 #include "stillmap/geometry/se3.hpp"
 #include "stillmap/io/atomic_file.hpp"
 #include "stillmap/io/png_codec.hpp"

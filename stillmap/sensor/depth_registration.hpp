@@ -4,7 +4,7 @@
 #include <opencv2/core/mat.hpp>
 
 #include "stillmap/core/images.hpp"
-#include "stillmap/geometry/depth_camera.hpp"
+#include "stillmap/geometry/camera.hpp"
 
 namespace stillmap {
 

@@ -13,7 +13,6 @@
 #include "stillmap/core/status.hpp"
 #include "stillmap/core/trajectory.hpp"
 #include "stillmap/perception/detections/detections.hpp"
-#include "stillmap/perception/motion/match_judge.hpp"
 #include "stillmap/perception/objects/object_state.hpp"
 
 namespace stillmap {

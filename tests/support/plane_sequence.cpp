@@ -6,7 +6,7 @@
 #include <fmt/core.h>
 #include <opencv2/imgproc.hpp>
 
-#include "stillmap/geometry/depth_camera.hpp"
+#include "stillmap/geometry/camera.hpp"
 #include "stillmap/io/atomic_file.hpp"
 #include "stillmap/io/image_io.hpp"
 #include "stillmap/sensor/camera_io.hpp"

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "stillmap/core/error.hpp"
-#include "stillmap/geometry/depth_camera.hpp"
+#include "stillmap/geometry/camera.hpp"
 #include "tests/support/fake_device.hpp"
 #include "tests/support/files.hpp"
 

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "stillmap/geometry/depth_camera.hpp"
+#include "stillmap/geometry/camera.hpp"
 #include "tests/support/files.hpp"
 #include "tooling/devices/open_device.hpp"
 

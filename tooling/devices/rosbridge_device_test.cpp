@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 
-#include "stillmap/geometry/depth_camera.hpp"
+#include "stillmap/geometry/camera.hpp"
 #include "stillmap/sensor/sequence_stream.hpp"
 #include "tests/support/files.hpp"
 #include "tests/support/plane_sequence.hpp"

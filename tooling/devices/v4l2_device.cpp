@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "stillmap/core/error.hpp"
-#include "stillmap/geometry/depth_camera.hpp"
+#include "stillmap/geometry/camera.hpp"
 #include "tooling/devices/image_pairs.hpp"
 #include "tooling/devices/video_node.hpp"
 

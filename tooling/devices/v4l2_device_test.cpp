@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 
-#include "stillmap/geometry/depth_camera.hpp"
+#include "stillmap/geometry/camera.hpp"
 #include "stillmap/io/jpeg_codec.hpp"
 #include "stillmap/sensor/sequence_stream.hpp"
 #include "tests/support/fake_device.hpp"

@@ -1,9 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tooling/pipeline/frame_log.hpp"
 
+#include <string_view>
 #include <utility>
 
 namespace stillmap {
+namespace {
+
+std::string_view match_judge_name(MatchJudge judge) {
+  switch (judge) {
+    case MatchJudge::kNotAsked:
+      break;
+    case MatchJudge::kNothing:
+      return "nothing";
+    case MatchJudge::kFundamental:
+      return "fundamental matrix";
+    case MatchJudge::kRotation:
+      return "rotation";
+    case MatchJudge::kPrediction:
+      return "prediction";
+  }
+  return "not asked";
+}
+
+}  // namespace
 
 void FrameLog::on_frame(const RgbdFrame& frame, const FrameResult& result) {
   ++frames_;

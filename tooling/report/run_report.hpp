@@ -89,7 +89,7 @@ struct RunReport {
 
   std::string dynamics_mode;  ///< name of the mode
   /// Number of frames with features in boxes of dynamic objects, by what the matches of these were
-  /// judged by (match_judge_name()); empty if the mode judges no matches.
+  /// judged by; empty if the mode judges no matches.
   std::map<std::string, std::size_t> matches_judged_by;
   /// By ascending track number; nullopt without a source of objects.
   std::optional<std::vector<ObjectSummary>> objects;

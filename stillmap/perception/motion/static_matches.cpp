@@ -65,22 +65,6 @@ MatchVerdict verdict(bool still) {
 
 }  // namespace
 
-std::string_view match_judge_name(MatchJudge judge) {
-  switch (judge) {
-    case MatchJudge::kNotAsked:
-      break;
-    case MatchJudge::kNothing:
-      return "nothing";
-    case MatchJudge::kFundamental:
-      return "fundamental matrix";
-    case MatchJudge::kRotation:
-      return "rotation";
-    case MatchJudge::kPrediction:
-      return "prediction";
-  }
-  return "not asked";
-}
-
 TwoViewGeometry estimate_two_view(
     const CameraModel& camera,
     std::span<const PointMatch> environment,

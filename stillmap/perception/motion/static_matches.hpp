@@ -10,9 +10,9 @@
 #include <Eigen/Geometry>
 
 #include "stillmap/core/fields.hpp"
+#include "stillmap/core/status.hpp"
 #include "stillmap/geometry/camera.hpp"
 #include "stillmap/geometry/point_match.hpp"
-#include "stillmap/perception/motion/match_judge.hpp"
 #include "stillmap/slam/features/matcher.hpp"
 
 namespace stillmap {
