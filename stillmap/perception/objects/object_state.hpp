@@ -94,6 +94,7 @@ struct VacatedPlace {
   /// The confidence from which a place counts as vacated, so that the thing at it is not in the
   /// map.
   static constexpr double kCountsFrom = 0.6;
+  /// Whether it counts as vacated.
   [[nodiscard]] bool counts() const { return confidence >= kCountsFrom; }
 };
 
