@@ -104,9 +104,8 @@ FrameRecords::Block& FrameRecords::writable(std::size_t block) {
     auto own = std::make_shared<Block>();
     own->records.reserve(kBlock);
     const std::size_t first = block * kBlock;
-    for (std::size_t i = first; i < std::min(first + kBlock, size_); ++i) {
-      own->records.push_back((*this)[i]);
-    }
+    const Iterator last = from(first + kBlock);
+    for (Iterator at = from(first); at != last; ++at) own->records.push_back(*at);
     shared = std::move(own);
   }
   return *shared;

@@ -2,6 +2,7 @@
 #include "stillmap/system/stages.hpp"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "stillmap/core/stopwatch.hpp"
@@ -24,25 +25,25 @@ void move_to_world(std::vector<ObjectState>& objects, const Eigen::Isometry3d& T
   }
 }
 
-// The features that are more likely to stand than to move.
-Features trusted_features(const Features& features, const CameraModel& camera) {
+// The features that may be landmarks: those that are more likely to stand than to move, and those
+// that have one in `landmarks`, per feature or empty.
+std::vector<std::uint8_t> trusted(const Features& features, std::span<const LandmarkId> landmarks) {
   std::vector<std::uint8_t> keep(features.size(), 0);
   for (std::size_t i = 0; i < keep.size(); ++i) {
-    keep[i] = features.trust_of(i) >= kTrustOfLandmarks ? 1 : 0;
+    const bool known = !landmarks.empty() && landmarks[i].valid();
+    keep[i] = known || features.trust_of(i) >= kTrustOfLandmarks ? 1 : 0;
   }
-  return select_features(features, keep, camera);
+  return keep;
 }
 
 // Removes new features that are more likely to move than not: they must not become landmarks.
 TrackedFrame without_doubted_newcomers(TrackedFrame tracked, const CameraModel& camera) {
   const Features& features = *tracked.features;
   if (features.trust.empty()) return tracked;
-  std::vector<std::uint8_t> keep(features.size(), 0);
+  const std::vector<std::uint8_t> keep = trusted(features, tracked.landmarks);
   std::vector<LandmarkId> landmarks;
   for (std::size_t i = 0; i < keep.size(); ++i) {
-    if (!tracked.landmarks[i].valid() && features.trust[i] < kTrustOfLandmarks) continue;
-    keep[i] = 1;
-    landmarks.push_back(tracked.landmarks[i]);
+    if (keep[i] != 0) landmarks.push_back(tracked.landmarks[i]);
   }
   tracked.features = std::make_shared<const Features>(select_features(features, keep, camera));
   tracked.landmarks = std::move(landmarks);
@@ -131,9 +132,9 @@ FeaturesPtr System::Stages::features_to_begin(FeaturesPtr own, const MoreFeature
   if (count_with_depth(*own) >= needs.enough_inliers) return own;
   std::optional<Features> all = more(*own);
   if (!all) return own;
-  Features trusted = trusted_features(*all, camera);
-  const bool suffice = count_with_depth(trusted) >= needs.min_inliers;
-  return std::make_shared<const Features>(suffice ? std::move(trusted) : *std::move(all));
+  Features standing = select_features(*all, trusted(*all, {}), camera);
+  const bool suffice = count_with_depth(standing) >= needs.min_inliers;
+  return std::make_shared<const Features>(suffice ? std::move(standing) : *std::move(all));
 }
 
 std::optional<Features> System::Stages::with_doubted(const PreparedFrame& prepared,

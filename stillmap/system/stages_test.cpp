@@ -220,9 +220,13 @@ TEST(Stages, FilledBoxesStandForThoseMissed) {
   const Network network = [](std::uint32_t k) {
     return k % 4 == 0 || k % 4 == 1 ? empty_frame(k) : whole_curtain(k);
   };
-  // The gain is 1.4 to 2.2, as the compiler rounds.
+#ifdef __clang__
+  constexpr double kGain = 1.3;  // it rounds otherwise than GCC: 1.4 to 1.5
+#else
+  constexpr double kGain = 1.6;  // 1.9 to 2.2
+#endif
   for (const char* mode : {"paper", "full"})
-    expect_gain(Disturbance::kCurtain, network, mode, "fill_boxes", 1.3);
+    expect_gain(Disturbance::kCurtain, network, mode, "fill_boxes", kGain);
 }
 
 // Features without a match in the previous frame are not judged: the pose is better, not right. The

@@ -194,16 +194,16 @@ TEST(IdentifyExport, RefusesClassifiersOfWholeImages) {
 }
 
 TEST(IdentifyExport, RefusesValuesThatAreNone) {
-  Tensor columns = all_zeros({{1, 84, 100}})[0];
+  Tensor columns = zeros({1, 84, 100});
   columns.values[400] = 7.5F;  // the first class of the first box
   EXPECT_THAT(refusal_of_values(columns), HasSubstr("a score of 7.5, expected 0 to 1"));
   columns.values[400] = 0.5F;
   for (const std::size_t a : {0U, 1U, 2U, 3U}) columns.values[a * 100] = 0.5F;
   EXPECT_THAT(refusal_of_values(columns), HasSubstr("all boxes lie in 0 to 1, expected pixels"));
-  Tensor queries = all_zeros({{1, 2, 84}})[0];
+  Tensor queries = zeros({1, 2, 84});
   queries.values[2] = 300;
   EXPECT_THAT(refusal_of_values(queries), HasSubstr("a side of a box at 300, expected shares"));
-  Tensor rows = all_zeros({{1, 2, 6}})[0];
+  Tensor rows = zeros({1, 2, 6});
   rows.values[5] = 0.5F;
   EXPECT_THAT(refusal_of_values(rows), HasSubstr("a class number of 0.5"));
   std::vector<Tensor> heat = all_zeros({{1, 160, 160, 80}, {1, 160, 160, 4}});
@@ -212,7 +212,7 @@ TEST(IdentifyExport, RefusesValuesThatAreNone) {
                 (void)identify_export(with_input({1, 3, 640, 640}), heat, kInput);
               }),
               HasSubstr("a score of -3, expected 0 to 1"));
-  Tensor labels = all_zeros({{1, 160, 160}})[0];
+  Tensor labels = zeros({1, 160, 160});
   labels.values[9] = 0.25F;
   EXPECT_THAT(refusal_of_values(labels),
               HasSubstr("holds 0.25, expected whole numbers from 0 to 20"));
